@@ -1,0 +1,61 @@
+// What a shadow method is given: placed objects with a role, lights and a pinhole camera. World:
+// right handed, Y up, metres.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "pipeline/mesh.h"
+
+namespace gnomon::pipeline {
+
+/// Haller 2003, section 3.2.1: a phantom stands for a real object; it has depth and shadows but no
+/// colour.
+enum class Role { virtual_object, phantom };
+
+struct Object {
+  std::string name;
+  Role role = Role::virtual_object;
+  std::shared_ptr<const Model> model;
+  glm::mat4 world_from_model{1.0f};
+  bool casts = true, receives = true;
+};
+
+struct Light {
+  std::string name;
+  /// w = 1: a point in metres; w = 0: the unit direction towards a light at infinity.
+  glm::vec4 position{0.0f, 1.0f, 0.0f, 0.0f};
+  /// Diffuse and specular colour on virtual objects.
+  glm::vec3 color{1.0f};
+  /// Part of a real surface's brightness that this light gives; a virtual shadow takes it away (0
+  /// to 1).
+  float share = 0.5f;
+  /// Radius of a spherical (or, at infinity, the angular radius in radians of a disc-shaped) light;
+  /// 0 is a point.
+  float radius = 0.0f;
+  /// Points that stand for a light with a radius; 1 is its centre alone.
+  int samples = 1;
+  /// Attenuation of a point light with distance (constant, linear, quadratic).
+  glm::vec3 attenuation{1.0f, 0.0f, 0.0f};
+};
+
+struct Scene {
+  std::vector<Object> objects;
+  std::vector<Light> lights;
+  /// Ambient light on virtual objects.
+  glm::vec3 ambient{0.3f};
+};
+
+/// A pinhole camera. Clip space is OpenGL's: the near plane is z = -w.
+struct Camera {
+  glm::mat4 clip_from_world{1.0f};
+  glm::vec3 eye_world{0.0f};
+  int width = 640, height = 480;
+};
+
+}  // namespace gnomon::pipeline

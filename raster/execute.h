@@ -1,0 +1,24 @@
+// Runs a recorded frame. The bytes of all targets are a function of the frame and of what the
+// targets held before; the number of threads has no part in it.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "raster/frame.h"
+
+namespace gnomon::raster {
+
+struct ExecuteOptions {
+  /// 0: as many as the machine has; 1: all work on the calling thread, no scheduler is touched.
+  int threads = 0;
+  /// Run only the first so many commands.
+  std::size_t commands = std::numeric_limits<std::size_t>::max();
+};
+
+/// Runs the frame's commands in recorded order at every pixel.
+/// Effect on a target's pixel: exactly that of the commands one after the other (semantics:
+/// docs/semantics.md).
+void execute(const Frame& frame, const ExecuteOptions& options = {});
+
+}  // namespace gnomon::raster
