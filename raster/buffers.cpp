@@ -1,0 +1,82 @@
+#include "raster/buffers.h"
+
+#include "raster/unorm.h"
+
+namespace gnomon::raster {
+
+namespace {
+
+template <class T, class Out, class Convert>
+std::vector<Out> rows(const TiledPlane<T>& plane, Convert convert) {
+  std::vector<Out> out;
+  out.reserve(static_cast<std::size_t>(plane.width()) * plane.height());
+  for (int y = 0; y < plane.height(); ++y)
+    for (int x = 0; x < plane.width(); ++x) out.push_back(convert(plane.at(x, y)));
+  return out;
+}
+
+template <class T>
+std::vector<T> rows(const TiledPlane<T>& plane) {
+  return rows<T, T>(plane, [](const T& value) { return value; });
+}
+
+}  // namespace
+
+ColorBuffer::ColorBuffer(int width, int height, ColorFormat format)
+    : width_(width), height_(height), format_(format) {
+  if (format == ColorFormat::rgba8)
+    plane_ = TiledPlane<Rgba8>(width, height);
+  else
+    plane_ = TiledPlane<glm::vec4>(width, height);
+}
+
+glm::vec4 ColorBuffer::at(int x, int y) const {
+  if (format_ == ColorFormat::rgba32f) return rgba32f().at(x, y);
+  const Rgba8 c = rgba8().at(x, y);
+  return {unorm8_to_float(c[0]), unorm8_to_float(c[1]), unorm8_to_float(c[2]),
+          unorm8_to_float(c[3])};
+}
+
+TiledPlane<Rgba8>& ColorBuffer::rgba8() {
+  require(format_ == ColorFormat::rgba8, "rgba8() is asked of an RGBA8 buffer");
+  return std::get<TiledPlane<Rgba8>>(plane_);
+}
+
+const TiledPlane<Rgba8>& ColorBuffer::rgba8() const {
+  return const_cast<ColorBuffer*>(this)->rgba8();
+}
+
+TiledPlane<glm::vec4>& ColorBuffer::rgba32f() {
+  require(format_ == ColorFormat::rgba32f, "rgba32f() is asked of an RGBA32F buffer");
+  return std::get<TiledPlane<glm::vec4>>(plane_);
+}
+
+const TiledPlane<glm::vec4>& ColorBuffer::rgba32f() const {
+  return const_cast<ColorBuffer*>(this)->rgba32f();
+}
+
+std::vector<std::uint8_t> ColorBuffer::to_rgba8_rows() const {
+  const std::vector<Rgba8> pixels =
+      format_ == ColorFormat::rgba8
+          ? rows(rgba8())
+          : rows<glm::vec4, Rgba8>(rgba32f(), [](const glm::vec4& c) { return to_rgba8(c); });
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(pixels.size() * 4);
+  for (const Rgba8& pixel : pixels) bytes.insert(bytes.end(), pixel.begin(), pixel.end());
+  return bytes;
+}
+
+DepthBuffer::DepthBuffer(int width, int height, DepthFormat format)
+    : format_(format), plane_(width, height) {
+  for (int ty = 0; ty < plane_.tiles_y(); ++ty)
+    for (int tx = 0; tx < plane_.tiles_x(); ++tx)
+      std::fill_n(plane_.tile(tx, ty), kPixelsPerTile, max_value());
+}
+
+std::uint32_t DepthBuffer::max_value() const { return max_depth(format_); }
+
+std::vector<std::uint32_t> DepthBuffer::to_rows() const { return rows(plane_); }
+
+std::vector<std::uint8_t> StencilBuffer::to_rows() const { return rows(plane_); }
+
+}  // namespace gnomon::raster

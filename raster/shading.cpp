@@ -1,0 +1,90 @@
+#include "raster/shading.h"
+
+#include <cmath>
+
+namespace gnomon::raster {
+
+namespace {
+
+float dot3(const glm::vec3& a, const glm::vec3& b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
+
+/// Zero stays zero.
+glm::vec3 normalized(const glm::vec3& v) {
+  const float length = std::sqrt(dot3(v, v));
+  return length > 0.0f ? glm::vec3(v.x / length, v.y / length, v.z / length) : v;
+}
+
+/// base^exponent by repeated squaring; base in [0, 1].
+float power(float base, int exponent) {
+  float result = 1.0f;
+  for (int n = exponent; n > 0; n >>= 1) {
+    if (n & 1) result = result * base;
+    base = base * base;
+  }
+  return result;
+}
+
+struct LightSum {
+  glm::vec3 ambient{0.0f}, diffuse{0.0f}, specular{0.0f};
+};
+
+void add_light(const Light& light, const Lit& lit, const glm::vec3& normal, const glm::vec3& world,
+               LightSum& sum) {
+  glm::vec3 to_light(light.position);
+  float strength = 1.0f;
+  if (light.position.w != 0.0f) {
+    to_light = to_light - world;
+    const float distance = std::sqrt(dot3(to_light, to_light));
+    const float attenuation = (light.attenuation.x + light.attenuation.y * distance) +
+                              light.attenuation.z * (distance * distance);
+    strength = attenuation > 0.0f ? 1.0f / attenuation : 0.0f;
+  }
+  to_light = normalized(to_light);
+  if (light.spot_cos_cutoff > -1.0f) {
+    const float cosine = -dot3(to_light, light.spot_direction);
+    strength =
+        cosine < light.spot_cos_cutoff ? 0.0f : strength * power(cosine, light.spot_exponent);
+  }
+  sum.ambient = sum.ambient + light.ambient * strength;
+  const float n_dot_l = dot3(normal, to_light);
+  if (!(n_dot_l > 0.0f)) return;
+  sum.diffuse = sum.diffuse + light.diffuse * (n_dot_l * strength);
+  const glm::vec3 half_vector = normalized(to_light + normalized(lit.eye_world - world));
+  const float n_dot_h = dot3(normal, half_vector);
+  const float highlight = n_dot_h > 0.0f ? power(n_dot_h, lit.material.shininess) : 0.0f;
+  sum.specular = sum.specular + light.specular * (highlight * strength);
+}
+
+glm::vec4 shade_flat(const Flat& flat, const Fragment& fragment) {
+  glm::vec4 color = flat.color * fragment.color;
+  if (flat.texture) color = color * sample(*flat.texture, fragment.texcoord.x, fragment.texcoord.y);
+  return color;
+}
+
+glm::vec4 shade_lit(const Lit& lit, const Fragment& fragment) {
+  glm::vec4 base = fragment.color;
+  if (lit.texture) base = base * sample(*lit.texture, fragment.texcoord.x, fragment.texcoord.y);
+  glm::vec3 normal = normalized(fragment.normal);
+  if (lit.two_sided && !fragment.front_facing) normal = -normal;
+
+  LightSum sum;
+  sum.ambient = lit.scene_ambient;
+  for (const Light& light : lit.lights) add_light(light, lit, normal, fragment.world, sum);
+
+  const Material& material = lit.material;
+  glm::vec3 color(0.0f);
+  if (lit.ambient) color = color + (material.ambient * sum.ambient) * glm::vec3(base);
+  if (lit.diffuse) color = color + (material.diffuse * sum.diffuse) * glm::vec3(base);
+  if (lit.specular) color = color + material.specular * sum.specular;
+  if (lit.emission) color = color + material.emission;
+  return {color, material.alpha * base.a};
+}
+
+}  // namespace
+
+glm::vec4 shade(const Shading& shading, const Fragment& fragment) {
+  if (const Flat* flat = std::get_if<Flat>(&shading)) return shade_flat(*flat, fragment);
+  return shade_lit(std::get<Lit>(shading), fragment);
+}
+
+}  // namespace gnomon::raster

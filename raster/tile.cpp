@@ -1,0 +1,206 @@
+#include "raster/tile.h"
+
+#include <algorithm>
+
+#include "raster/blend.h"
+#include "raster/interpolate.h"
+#include "raster/kernels.h"
+#include "raster/unorm.h"
+
+namespace gnomon::raster {
+
+namespace {
+
+/// Offset of a block in a tile-linear plane, from its coordinates inside the tile in blocks.
+std::size_t block_offset(int bx, int by) {
+  return static_cast<std::size_t>(by * kBlocksPerTileRow + bx) * kPixelsPerBlock;
+}
+
+PixelBox tile_box(TileIndex tile) {
+  return {tile.x * kTileSize, tile.y * kTileSize, (tile.x + 1) * kTileSize,
+          (tile.y + 1) * kTileSize};
+}
+
+/// Pixels of the block at (x0, y0) that lie inside a box.
+PixelMask box_mask(const PixelBox& box, int x0, int y0) {
+  const int left = std::clamp(box.x0 - x0, 0, kBlockSize),
+            right = std::clamp(box.x1 - x0, 0, kBlockSize);
+  const int bottom = std::clamp(box.y0 - y0, 0, kBlockSize),
+            top = std::clamp(box.y1 - y0, 0, kBlockSize);
+  if (left >= right || bottom >= top) return 0;
+  const PixelMask row = ((PixelMask{1} << (right - left)) - 1) << left;
+  PixelMask mask = 0;
+  for (int y = bottom; y < top; ++y) mask |= row << (y * kBlockSize);
+  return mask;
+}
+
+/// Calls body(block's first pixel x, y, offset in the tile, mask of the box's pixels) for each 8x8
+/// block that a box touches.
+template <class Body>
+void for_each_block(const PixelBox& box, TileIndex tile, Body body) {
+  const PixelBox inside = intersect(box, tile_box(tile));
+  if (inside.empty()) return;
+  const int x0 = tile.x * kTileSize, y0 = tile.y * kTileSize;
+  for (int by = (inside.y0 - y0) / kBlockSize; by <= (inside.y1 - 1 - y0) / kBlockSize; ++by)
+    for (int bx = (inside.x0 - x0) / kBlockSize; bx <= (inside.x1 - 1 - x0) / kBlockSize; ++bx) {
+      const int x = x0 + bx * kBlockSize, y = y0 + by * kBlockSize;
+      body(x, y, block_offset(bx, by), box_mask(inside, x, y));
+    }
+}
+
+template <class Body>
+void for_each_pixel(PixelMask mask, Body body) {
+  for (; mask; mask &= mask - 1) body(static_cast<std::size_t>(__builtin_ctzll(mask)));
+}
+
+void write_color(ColorBuffer& target, TileIndex tile, std::size_t offset, const ColorState& state,
+                 const glm::vec4& color) {
+  if (target.format() == ColorFormat::rgba8) {
+    Rgba8& stored = target.rgba8().tile(tile.x, tile.y)[offset];
+    stored = blend_rgba8(state, color, stored);
+  } else {
+    glm::vec4& stored = target.rgba32f().tile(tile.x, tile.y)[offset];
+    stored = blend_rgba32f(state, color, stored);
+  }
+}
+
+bool any(const std::array<bool, 4>& write) { return write[0] || write[1] || write[2] || write[3]; }
+
+FragmentTests resolve_tests(const Draw& draw, const Targets& targets, bool front_facing) {
+  FragmentTests tests;
+  const State& state = draw.state;
+  if (state.depth && targets.depth) {
+    tests.depth_test = true;
+    tests.depth_write = state.depth->write;
+    tests.depth_func = state.depth->func;
+  }
+  if (state.stencil && targets.stencil) {
+    tests.stencil_test = true;
+    tests.stencil = front_facing ? state.stencil->front : state.stencil->back;
+    tests.stencil_ref = static_cast<std::uint8_t>(std::clamp(draw.stencil_ref, 0, 255));
+  }
+  return tests;
+}
+
+/// The triangle's edges at the block whose first pixel is (x, y); false if an edge keeps the whole
+/// block out.
+bool edges_at_block(const SetupTriangle& triangle, int x, int y, BlockEdges& edges) {
+  constexpr std::int64_t kSpan = kBlockSize - 1;
+  edges.count = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const std::int64_t value =
+        (triangle.edge(k, x * std::int64_t{256} + 128, y * std::int64_t{256} + 128) -
+         triangle.bias[i]) >>
+        8;
+    const std::int64_t a = triangle.a[i], b = triangle.b[i];
+    const std::int64_t highest =
+        value + std::max<std::int64_t>(a, 0) * kSpan + std::max<std::int64_t>(b, 0) * kSpan;
+    if (highest < 0) return false;
+    const std::int64_t lowest =
+        value + std::min<std::int64_t>(a, 0) * kSpan + std::min<std::int64_t>(b, 0) * kSpan;
+    if (lowest >= 0) continue;
+    // An edge that crosses the block is within 7 (|a| + |b|) < 2^29 of zero in it.
+    edges.value[edges.count] = static_cast<std::int32_t>(value);
+    edges.step_x[edges.count] = triangle.a[i];
+    edges.step_y[edges.count] = triangle.b[i];
+    ++edges.count;
+  }
+  return true;
+}
+
+BlockDepth depth_at_tile(const DrawSetup& setup, const DepthPlane& plane, TileIndex tile) {
+  BlockDepth depth;
+  depth.fraction_bits = depth_fraction_bits(setup.depth_format);
+  depth.base = plane.base_at(tile.x * kTileSize, tile.y * kTileSize) +
+               (std::uint64_t{1} << (depth.fraction_bits - 1));
+  depth.step_x = plane.step_x;
+  depth.step_y = plane.step_y;
+  depth.narrow = plane.narrow;
+  depth.low = setup.depth_low;
+  depth.high = setup.depth_high;
+  return depth;
+}
+
+}  // namespace
+
+void clear_tile(const Clear& clear, const Targets& targets, TileIndex tile) noexcept {
+  const int width = targets.color   ? targets.color->width()
+                    : targets.depth ? targets.depth->width()
+                                    : targets.stencil->width();
+  const int height = targets.color   ? targets.color->height()
+                     : targets.depth ? targets.depth->height()
+                                     : targets.stencil->height();
+  const ColorState color_state{clear.color_write, {}};
+  const bool color = clear.color && any(clear.color_write);
+  const bool depth = clear.depth && clear.depth_write;
+  const std::uint32_t depth_value =
+      depth ? float_to_depth(*clear.depth, targets.depth->format()) : 0;
+  const std::uint8_t stencil_mask = clear.stencil_write_mask;
+  for_each_block(
+      scissor_box(clear.scissor, width, height), tile,
+      [&](int, int, std::size_t offset, PixelMask mask) {
+        for_each_pixel(mask, [&](std::size_t i) {
+          if (color) write_color(*targets.color, tile, offset + i, color_state, *clear.color);
+          if (depth) targets.depth->plane().tile(tile.x, tile.y)[offset + i] = depth_value;
+          if (clear.stencil) {
+            std::uint8_t& s = targets.stencil->plane().tile(tile.x, tile.y)[offset + i];
+            s = static_cast<std::uint8_t>((s & ~stencil_mask) | (*clear.stencil & stencil_mask));
+          }
+        });
+      });
+}
+
+void blit_tile(const Blit& blit, const Targets& targets, TileIndex tile) noexcept {
+  ColorBuffer& target = *targets.color;
+  const PixelBox image_box = scissor_box(Rect{blit.x, blit.y, blit.image.width, blit.image.height},
+                                         target.width(), target.height());
+  const PixelBox box =
+      intersect(image_box, scissor_box(blit.scissor, target.width(), target.height()));
+  const ColorState state{blit.color_write, {}};
+  for_each_block(box, tile, [&](int x, int y, std::size_t offset, PixelMask mask) {
+    for_each_pixel(mask, [&](std::size_t i) {
+      const int px = x + static_cast<int>(i) % kBlockSize,
+                py = y + static_cast<int>(i) / kBlockSize;
+      const std::uint8_t* c = blit.image.pixel(px - blit.x, py - blit.y);
+      const std::uint8_t alpha = blit.image.channels == 4 ? c[3] : std::uint8_t{0};
+      const glm::vec4 color(unorm8_to_float(c[0]), unorm8_to_float(c[1]), unorm8_to_float(c[2]),
+                            unorm8_to_float(alpha));
+      write_color(target, tile, offset + i, state, color);
+    });
+  });
+}
+
+void draw_tile(const DrawSetup& setup, const SetupTriangle& triangle, const Targets& targets,
+               TileIndex tile) noexcept {
+  const Draw& draw = *setup.draw;
+  const FragmentTests tests = resolve_tests(draw, targets, triangle.front_facing);
+  const bool color = targets.color && any(draw.state.color.write);
+  std::uint32_t* const depth =
+      targets.depth ? targets.depth->plane().tile(tile.x, tile.y) : nullptr;
+  std::uint8_t* const stencil =
+      targets.stencil ? targets.stencil->plane().tile(tile.x, tile.y) : nullptr;
+  const BlockDepth at_tile =
+      tests.depth_test ? depth_at_tile(setup, triangle.depth, tile) : BlockDepth{};
+
+  for_each_block(triangle.box, tile, [&](int x, int y, std::size_t offset, PixelMask in_box) {
+    BlockEdges edges;
+    if (!edges_at_block(triangle, x, y, edges)) return;
+    const PixelMask covered = cover_block(edges) & in_box;
+    if (!covered) return;
+    BlockDepth plane = at_tile;
+    plane.base += static_cast<std::uint64_t>(x - tile.x * kTileSize) * plane.step_x +
+                  static_cast<std::uint64_t>(y - tile.y * kTileSize) * plane.step_y;
+    const PixelMask passed = test_block(tests, covered, plane, depth ? depth + offset : nullptr,
+                                        stencil ? stencil + offset : nullptr);
+    if (!color) return;
+    for_each_pixel(passed, [&](std::size_t i) {
+      const int px = x + static_cast<int>(i) % kBlockSize,
+                py = y + static_cast<int>(i) / kBlockSize;
+      write_color(*targets.color, tile, offset + i, draw.state.color,
+                  shade(draw.shading, interpolate(draw, triangle, px, py)));
+    });
+  });
+}
+
+}  // namespace gnomon::raster

@@ -1,0 +1,46 @@
+#include "raster/interpolate.h"
+
+namespace gnomon::raster {
+
+namespace {
+
+/// Perspective-correct weights of the mesh triangle's three vertices.
+glm::vec3 vertex_weights(const SetupTriangle& triangle, int x, int y) {
+  const std::int64_t x_fx = x * std::int64_t{256} + 128, y_fx = y * std::int64_t{256} + 128;
+  const Attributes& at = triangle.attributes;
+  const double area = static_cast<double>(triangle.depth.area);
+  const double q0 = static_cast<double>(triangle.edge(0, x_fx, y_fx)) / area * at.inverse_w[0];
+  const double q1 = static_cast<double>(triangle.edge(1, x_fx, y_fx)) / area * at.inverse_w[1];
+  const double q2 = static_cast<double>(triangle.edge(2, x_fx, y_fx)) / area * at.inverse_w[2];
+  const double sum = (q0 + q1) + q2;
+  const glm::dvec3 weights =
+      (at.weights[0] * (q0 / sum) + at.weights[1] * (q1 / sum)) + at.weights[2] * (q2 / sum);
+  return glm::vec3(weights);
+}
+
+template <class T>
+T weighted(std::span<const T> values, const std::uint32_t* index, const glm::vec3& p) {
+  return (values[index[0]] * p.x + values[index[1]] * p.y) + values[index[2]] * p.z;
+}
+
+}  // namespace
+
+Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, int x, int y) noexcept {
+  Fragment fragment;
+  fragment.front_facing = triangle.front_facing;
+  const MeshView& mesh = draw.mesh;
+  const Lit* lit = std::get_if<Lit>(&draw.shading);
+  if (!lit && mesh.colors.empty() && !std::get<Flat>(draw.shading).texture) return fragment;
+
+  const glm::vec3 p = vertex_weights(triangle, x, y);
+  const std::uint32_t* index = mesh.indices.data() + triangle.attributes.first_index;
+  if (!mesh.colors.empty()) fragment.color = weighted(mesh.colors, index, p);
+  if (!mesh.texcoords.empty()) fragment.texcoord = weighted(mesh.texcoords, index, p);
+  if (lit) {
+    fragment.normal = lit->world_from_model_normal * weighted(mesh.normals, index, p);
+    fragment.world = glm::vec3(lit->world_from_model * weighted(mesh.positions, index, p));
+  }
+  return fragment;
+}
+
+}  // namespace gnomon::raster

@@ -1,0 +1,15 @@
+// Perspective-correct attributes at a pixel centre.
+// Order of operations: barycentric weights E_k / area in double (E_k is an exact integer), each
+// times 1/w, divided by their sum; mapped to the mesh's triangle if it was clipped; rounded to
+// float32; attributes are (p0 a0 + p1 a1) + p2 a2 in float32.
+#pragma once
+
+#include "raster/geometry.h"
+#include "raster/shading.h"
+
+namespace gnomon::raster {
+
+/// Precondition: the triangle covers pixel (x, y).
+Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, int x, int y) noexcept;
+
+}  // namespace gnomon::raster
