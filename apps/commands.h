@@ -1,0 +1,14 @@
+// The program's subcommands: one file and one function each. A command adds itself with its options
+// and a callback; the callback does the work and throws what goes wrong (apps/main.cpp says it).
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace gnomon::apps {
+
+/// gnomon compare A B: how much two pictures differ.
+void add_compare(CLI::App& program);
+
+}  // namespace gnomon::apps
