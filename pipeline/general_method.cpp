@@ -1,0 +1,41 @@
+#include "pipeline/general_method.h"
+
+#include "pipeline/light_pass.h"
+#include "pipeline/light_samples.h"
+#include "raster/check.h"
+
+namespace gnomon::pipeline {
+
+raster::Frame record_general(const Scene& scene, const Camera& camera,
+                             const raster::Targets& targets, const GeneralOptions& options) {
+  raster::require(targets.color && targets.depth && targets.stencil,
+                  "the general method needs colour, depth and stencil");
+  TopologyCache own_topologies;
+  const std::vector<PlacedObject> objects =
+      place_objects(scene, camera, options.topologies ? *options.topologies : own_topologies);
+  const std::vector<Light> lights = sample_lights(scene);
+  const Receivers receivers(scene);
+  const std::optional<NearRegion> region = near_region(camera.clip_from_world);
+
+  raster::Frame frame;
+  frame.begin_pass("ambient pass", targets);
+  frame.clear({.color = options.background, .depth = 1.0f, .stencil = 0});
+  raster::State surface = surface_state();
+  surface.depth = raster::DepthState{};
+  for (const PlacedObject& object : objects) {
+    draw_lit(frame, object, scene, camera, {.ambient = true, .emission = true}, surface);
+  }
+  for (const Light& light : lights) {
+    const std::string suffix = lights.size() > 1 ? ": " + light.name : "";
+    frame.begin_pass("shadow volumes" + suffix, targets);
+    frame.clear({.stencil = 0});
+    count_volumes(
+        frame, make_volumes(objects, light, receivers, region, {options.method, options.extrusion}),
+        {.appendix_letter = options.appendix_letter, .light_name = light.name});
+    frame.begin_pass("lit pass" + suffix, targets);
+    for (const PlacedObject& object : objects) add_light(frame, object, scene, camera, light);
+  }
+  return frame;
+}
+
+}  // namespace gnomon::pipeline

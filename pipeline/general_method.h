@@ -1,0 +1,31 @@
+// The general method of shadow volumes (Haller 2003, section 3.1.2): an ambient pass, then for each
+// light the counts in the stencil buffer and a pass that adds the light where the count is 0.
+#pragma once
+
+#include "pipeline/count_volumes.h"
+#include "pipeline/scene.h"
+#include "pipeline/topology.h"
+#include "raster/frame.h"
+
+namespace gnomon::pipeline {
+
+struct GeneralOptions {
+  VolumeMethod method = VolumeMethod::automatic;
+  Extrusion extrusion;
+  /// Culled single-sided draws and saturating operations (appendix A).
+  bool appendix_letter = false;
+  glm::vec4 background{0.0f, 0.0f, 0.0f, 1.0f};
+  /// Topologies kept between frames; null builds them anew.
+  TopologyCache* topologies = nullptr;
+};
+
+/// Records the frame of a wholly virtual scene: every object, whatever its role, is drawn and
+/// shadowed. Labels: "ambient pass", "shadow volumes" and "lit pass", the latter two with ": LIGHT"
+/// when there are several lights.
+/// Preconditions: all three targets; `scene` outlives the execution of the frame.
+/// After execution: colour as described, depth of the scene; the stencil is used up (a pixel that
+/// was lit is marked, so that no light adds twice where two surfaces have one depth).
+raster::Frame record_general(const Scene& scene, const Camera& camera,
+                             const raster::Targets& targets, const GeneralOptions& options = {});
+
+}  // namespace gnomon::pipeline

@@ -1,0 +1,17 @@
+// The pass that adds one light's diffuse and specular terms where it is not in shadow.
+#pragma once
+
+#include "pipeline/placed_object.h"
+#include "raster/frame.h"
+
+namespace gnomon::pipeline {
+
+/// Records `object` again on its visible fragments (depth EQUAL, depth kept), adding the light to
+/// what is there, where the stencil is 0; an object that receives no shadows, everywhere. Alpha is
+/// kept.
+/// The stencil of a pixel that was lit is incremented: where two triangles have one depth in one
+/// pixel, only the first is added, as only the first was drawn by depth LESS.
+void add_light(raster::Frame& frame, const PlacedObject& object, const Scene& scene,
+               const Camera& camera, const Light& light);
+
+}  // namespace gnomon::pipeline

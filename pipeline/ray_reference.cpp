@@ -1,0 +1,234 @@
+#include "pipeline/ray_reference.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include <embree3/rtcore.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "raster/check.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+/// How far a point is lifted off its surface before it looks for the light, as a part of its
+/// coordinates' size: Embree's float32 triangles are off by about a tenth of this.
+constexpr double kLift = 2e-6;
+
+struct Body {
+  /// World-space corners, exactly those that Embree has (float32).
+  std::vector<glm::vec3> corners;
+  std::vector<std::uint32_t> indices;
+  bool casts = true, closed = false;
+  Role role = Role::virtual_object;
+};
+
+/// Does every directed edge have its opposite? By exact position.
+bool is_closed(const std::vector<glm::vec3>& corners) {
+  using Point = std::array<float, 3>;
+  std::map<std::pair<Point, Point>, int> balance;
+  const auto point = [&](std::size_t i) {
+    const glm::vec3& p = corners[i];
+    return Point{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
+  };
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point a = point(i + k), b = point(i + (k + 1) % 3);
+      if (a == b) continue;
+      balance[a < b ? std::pair(a, b) : std::pair(b, a)] += a < b ? 1 : -1;
+    }
+  }
+  return std::all_of(balance.begin(), balance.end(),
+                     [](const auto& entry) { return entry.second == 0; });
+}
+
+Body make_body(const Object& object) {
+  raster::require(object.model != nullptr, "an object has a model");
+  Body body;
+  body.casts = object.casts;
+  body.role = object.role;
+  std::vector<glm::vec3> model_corners;
+  const glm::dmat4 world(object.world_from_model);
+  for (const Part& part : object.model->parts) {
+    raster::require(part.mesh.indices.size() % 3 == 0, "a mesh has three indices a triangle");
+    for (const std::uint32_t index : part.mesh.indices) {
+      raster::require(index < part.mesh.positions.size(),
+                      "a mesh's index names one of its positions");
+      const glm::vec4& p = part.mesh.positions[index];
+      model_corners.emplace_back(p);
+      body.indices.push_back(static_cast<std::uint32_t>(body.indices.size()));
+      body.corners.emplace_back(glm::vec3(world * glm::dvec4(p)));
+    }
+  }
+  body.closed = is_closed(model_corners);
+  // A mirroring transform turns triangles round; put the outside back outside.
+  if (glm::determinant(glm::dmat3(world)) < 0.0) {
+    for (std::size_t i = 0; i + 2 < body.indices.size(); i += 3) {
+      std::swap(body.indices[i + 1], body.indices[i + 2]);
+    }
+  }
+  return body;
+}
+
+bool belongs(const Body& body, Among among) {
+  return among == Among::all || (among == Among::phantoms) == (body.role == Role::phantom);
+}
+
+std::size_t slot(Among among) { return static_cast<std::size_t>(among); }
+
+RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, double near, double far) {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(origin.x);
+  ray.org_y = static_cast<float>(origin.y);
+  ray.org_z = static_cast<float>(origin.z);
+  ray.dir_x = static_cast<float>(direction.x);
+  ray.dir_y = static_cast<float>(direction.y);
+  ray.dir_z = static_cast<float>(direction.z);
+  ray.tnear = static_cast<float>(near);
+  ray.tfar = static_cast<float>(far);
+  ray.mask = 0xffffffffu;
+  return ray;
+}
+
+}  // namespace
+
+struct RayReference::World {
+  RTCDevice device = nullptr;
+  std::vector<Body> bodies;
+  /// By Among: everything, and what casts.
+  std::array<RTCScene, 3> visible{}, casters{};
+
+  explicit World(const Scene& scene) {
+    for (const Object& object : scene.objects) bodies.push_back(make_body(object));
+    device = rtcNewDevice(nullptr);
+    if (!device) throw std::runtime_error("Embree cannot start");
+    for (const Among among : {Among::all, Among::virtual_objects, Among::phantoms}) {
+      visible[slot(among)] = build(among, false);
+      casters[slot(among)] = build(among, true);
+    }
+  }
+  ~World() {
+    for (RTCScene scene : visible) rtcReleaseScene(scene);
+    for (RTCScene scene : casters) rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  RTCScene build(Among among, bool casters_only) const {
+    RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const Body& body = bodies[i];
+      if (!belongs(body, among) || (casters_only && !body.casts) || body.indices.empty()) continue;
+      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+      auto* corners = static_cast<float*>(
+          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                  3 * sizeof(float), body.corners.size()));
+      auto* indices = static_cast<std::uint32_t*>(
+          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                  3 * sizeof(std::uint32_t), body.indices.size() / 3));
+      for (const glm::vec3& p : body.corners) {
+        *corners++ = p.x;
+        *corners++ = p.y;
+        *corners++ = p.z;
+      }
+      std::copy(body.indices.begin(), body.indices.end(), indices);
+      rtcCommitGeometry(geometry);
+      rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(i));
+      rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(scene);
+    return scene;
+  }
+};
+
+RayReference::RayReference(const Scene& scene) : world_(std::make_unique<World>(scene)) {}
+RayReference::~RayReference() = default;
+
+RayHit RayReference::trace(const Ray& ray, Among visible) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query{};
+  query.ray = make_ray(ray.origin, ray.direction, 0.0, std::numeric_limits<double>::infinity());
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(world_->visible[slot(visible)], &context, &query);
+  RayHit result;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return result;
+  result.hit = true;
+  result.object = query.hit.geomID;
+  const Body& body = world_->bodies[result.object];
+  const std::uint32_t* index = &body.indices[3 * static_cast<std::size_t>(query.hit.primID)];
+  const glm::dvec3 a(body.corners[index[0]]), b(body.corners[index[1]]), c(body.corners[index[2]]);
+  result.normal = glm::normalize(glm::cross(b - a, c - a));
+  // Again in double: Embree's own distance has float32's rounding.
+  const double along = glm::dot(result.normal, ray.direction);
+  const double exact = glm::dot(result.normal, a - ray.origin) / along;
+  result.distance = std::isfinite(exact) ? exact : static_cast<double>(query.ray.tfar);
+  result.point = ray.origin + ray.direction * result.distance;
+  return result;
+}
+
+bool RayReference::blocked(const glm::dvec3& point, const glm::vec4& light, Among casters) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  const bool directional = light.w == 0.0f;
+  const glm::dvec3 towards = directional ? glm::dvec3(light) : glm::dvec3(light) - point;
+  RTCRay ray =
+      make_ray(point, towards, 0.0, directional ? std::numeric_limits<double>::infinity() : 1.0);
+  rtcOccluded1(world_->casters[slot(casters)], &context, &ray);
+  return ray.tfar < 0.0f;
+}
+
+RayShadow RayReference::shadow(const RayHit& hit, const glm::vec4& light, Among casters) const {
+  RayShadow result;
+  if (!hit.hit) return result;
+  const glm::dvec3 towards = light.w == 0.0f ? glm::dvec3(light) : glm::dvec3(light) - hit.point;
+  result.faces_away = glm::dot(hit.normal, towards) <= 0.0;
+  const Body& body = world_->bodies[hit.object];
+  const bool own_shadow = result.faces_away && body.closed && body.casts && belongs(body, casters);
+  const double size =
+      std::max({1.0, std::abs(hit.point.x), std::abs(hit.point.y), std::abs(hit.point.z)});
+  const glm::dvec3 light_side = result.faces_away ? -hit.normal : hit.normal;
+  // A surface turned away from the light looks through its own body, which is asked about apart.
+  result.blocked = blocked(hit.point + light_side * (kLift * size), light, casters);
+  result.in_shadow = result.blocked || own_shadow;
+  return result;
+}
+
+std::vector<RayReference::Sample> RayReference::cast(std::span<const Ray> rays,
+                                                     const glm::vec4& light, Among visible,
+                                                     Among casters) const {
+  std::vector<Sample> samples;
+  samples.reserve(rays.size());
+  for (const Ray& ray : rays) {
+    Sample sample{trace(ray, visible), {}};
+    sample.shadow = shadow(sample.hit, light, casters);
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+Ray window_ray(const Camera& camera, double x, double y) {
+  const glm::dmat4 world_from_clip = glm::inverse(glm::dmat4(camera.clip_from_world));
+  const double x_ndc = 2.0 * x / camera.width - 1.0, y_ndc = 2.0 * y / camera.height - 1.0;
+  const glm::dvec4 near = world_from_clip * glm::dvec4(x_ndc, y_ndc, -1.0, 1.0);
+  const glm::dvec3 eye(camera.eye_world);
+  return {eye, glm::normalize(glm::dvec3(near) / near.w - eye)};
+}
+
+std::vector<Ray> pixel_rays(const Camera& camera) {
+  std::vector<Ray> rays;
+  rays.reserve(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) rays.push_back(window_ray(camera, x + 0.5, y + 0.5));
+  }
+  return rays;
+}
+
+}  // namespace gnomon::pipeline

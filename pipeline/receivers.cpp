@@ -1,0 +1,283 @@
+// Proof that the reach is enough. Point light L: a point p of the infinite volume is L + t (c - L)
+// with c on a casting triangle and t >= 1; it lies in the volume swept by the factor k when t <= k.
+// For any function f with f(s x) = s f(x) for s > 0 that is positive on c - L,
+//   t = f(p - L) / f(c - L) <= max f(p - L) / min f(c - L).
+// Two such functions are used and the smaller bound is taken: the Euclidean norm (convex: its
+// largest value over a polygon is at a corner; its smallest over a triangle is the point-triangle
+// distance), and the distance along the axis from the light to the caster (linear: both at
+// corners), which is tight for a flat receiver across the axis and holds only where the whole
+// caster is in front of the light. In that case every p lies in the pyramid of slopes that the
+// caster's corners span, and no nearer along the axis than the nearest corner, so receivers are
+// clipped to it first; slopes and distance are widened by 1e-6 so that rounding (about 1e-15) cuts
+// off nothing.
+// Direction d (towards the light): p = c - t d with t >= 0, so t = s(p) - s(c) with s(x) = -d.x,
+// and t <= max s(p) - min s(c), over receivers clipped to the caster's rectangle across d.
+// The volume that is drawn has float32 corners: the margin of 1/256 is five decimal orders above
+// that rounding.
+#include "pipeline/receivers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "raster/check.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+constexpr double kWiden = 1e-6;
+/// A caster nearer to the light, along the axis or at all, than this part of its farthest corner
+/// is "touched" by it.
+constexpr double kTooNear = 1e-3;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Basis {
+  glm::dvec3 u, v, axis;
+  glm::dvec3 operator()(const glm::dvec3& p) const {
+    return {glm::dot(u, p), glm::dot(v, p), glm::dot(axis, p)};
+  }
+};
+
+/// A right-angled basis about a unit axis.
+Basis basis_about(const glm::dvec3& axis) {
+  const glm::dvec3 size = glm::abs(axis);
+  glm::dvec3 helper(0.0);
+  if (size.x <= size.y && size.x <= size.z) {
+    helper.x = 1.0;
+  } else if (size.y <= size.z) {
+    helper.y = 1.0;
+  } else {
+    helper.z = 1.0;
+  }
+  const glm::dvec3 u = glm::normalize(glm::cross(axis, helper));
+  return {u, glm::cross(axis, u), axis};
+}
+
+/// The half space dot(normal, p) >= offset.
+struct HalfSpace {
+  glm::dvec3 normal;
+  double offset;
+  double of(const glm::dvec3& p) const { return glm::dot(normal, p) - offset; }
+};
+
+using Region = std::vector<HalfSpace>;
+using Polygon = std::vector<glm::dvec3>;
+
+/// Is the box wholly outside one of the half spaces?
+bool box_outside(const Receivers::Group& group, const Region& region) {
+  for (const HalfSpace& half : region) {
+    const glm::dvec3 farthest(half.normal.x > 0.0 ? group.high.x : group.low.x,
+                              half.normal.y > 0.0 ? group.high.y : group.low.y,
+                              half.normal.z > 0.0 ? group.high.z : group.low.z);
+    if (half.of(farthest) < 0.0) return true;
+  }
+  return false;
+}
+
+void clip(Polygon& polygon, const Region& region, Polygon& scratch) {
+  for (const HalfSpace& half : region) {
+    scratch.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const glm::dvec3& p = polygon[i];
+      const glm::dvec3& q = polygon[(i + 1) % polygon.size()];
+      const double dp = half.of(p), dq = half.of(q);
+      if (dp >= 0.0) scratch.push_back(p);
+      if ((dp >= 0.0) != (dq >= 0.0)) scratch.push_back(p + (q - p) * (dp / (dp - dq)));
+    }
+    polygon.swap(scratch);
+    if (polygon.empty()) return;
+  }
+}
+
+template <class Visit>
+void visit_clipped(const Receivers& receivers, const Region& region, Visit&& visit) {
+  Polygon polygon, scratch;
+  for (const Receivers::Group& group : receivers.groups()) {
+    if (box_outside(group, region)) continue;
+    for (const WorldTriangle& triangle : group.triangles) {
+      polygon.assign(triangle.begin(), triangle.end());
+      clip(polygon, region, scratch);
+      for (const glm::dvec3& p : polygon) visit(p);
+    }
+  }
+}
+
+/// Distance from a point to a triangle (degenerate ones included): the nearest of the projection,
+/// if it falls inside, and the three edges.
+double distance_to(const glm::dvec3& point, const WorldTriangle& triangle) {
+  double nearest = kInfinity;
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3 a = triangle[i], edge = triangle[(i + 1) % 3] - a;
+    const double square = glm::dot(edge, edge);
+    const double t = square > 0.0 ? std::clamp(glm::dot(point - a, edge) / square, 0.0, 1.0) : 0.0;
+    nearest = std::min(nearest, glm::length(a + edge * t - point));
+  }
+  const glm::dvec3 normal = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  const double area = glm::length(normal);
+  if (area > 0.0) {
+    bool inside = true;
+    for (int i = 0; i < 3; ++i) {
+      const glm::dvec3 edge = triangle[(i + 1) % 3] - triangle[i];
+      inside = inside && glm::dot(glm::cross(edge, point - triangle[i]), normal) >= 0.0;
+    }
+    if (inside) {
+      nearest = std::min(nearest, std::abs(glm::dot(point - triangle[0], normal)) / area);
+    }
+  }
+  return nearest;
+}
+
+struct Box {
+  glm::dvec3 low{kInfinity}, high{-kInfinity};
+  void add(const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+};
+
+Reach reach_of(double amount, double least) {
+  if (!(amount >= least)) return {Reach::Kind::none, 0.0};
+  if (!std::isfinite(amount)) return {Reach::Kind::unbounded, 0.0};
+  return {Reach::Kind::finite, amount};
+}
+
+/// The pyramid from the light (the origin of `basis`) round the caster.
+struct Pyramid {
+  Region region;
+  bool usable = false;
+  double nearest_z = 0.0;
+};
+
+Pyramid pyramid_round(const glm::dvec3& light, std::span<const WorldTriangle> casting,
+                      const Basis& basis, double farthest_corner) {
+  Pyramid pyramid;
+  double z_min = kInfinity;
+  for (const WorldTriangle& triangle : casting) {
+    for (const glm::dvec3& corner : triangle) {
+      z_min = std::min(z_min, glm::dot(basis.axis, corner - light));
+    }
+  }
+  if (!(z_min > kTooNear * farthest_corner)) return pyramid;
+  glm::dvec2 low(kInfinity), high(-kInfinity);
+  for (const WorldTriangle& triangle : casting) {
+    for (const glm::dvec3& corner : triangle) {
+      const glm::dvec3 q = basis(corner - light);
+      const glm::dvec2 slope = glm::dvec2(q) / q.z;
+      low = glm::min(low, slope);
+      high = glm::max(high, slope);
+    }
+  }
+  low -= kWiden;
+  high += kWiden;
+  const auto half = [&](const glm::dvec3& normal, double offset) {
+    pyramid.region.push_back({normal, offset + glm::dot(normal, light)});
+  };
+  half(basis.axis, z_min * (1.0 - kWiden));
+  half(basis.u - low.x * basis.axis, 0.0);
+  half(high.x * basis.axis - basis.u, 0.0);
+  half(basis.v - low.y * basis.axis, 0.0);
+  half(high.y * basis.axis - basis.v, 0.0);
+  pyramid.usable = true;
+  pyramid.nearest_z = z_min;
+  return pyramid;
+}
+
+Reach reach_from_point(const glm::dvec3& light, std::span<const WorldTriangle> casting,
+                       const Receivers& receivers) {
+  Box box;
+  double farthest_corner = 0.0, nearest = kInfinity;
+  for (const WorldTriangle& triangle : casting) {
+    nearest = std::min(nearest, distance_to(light, triangle));
+    for (const glm::dvec3& corner : triangle) {
+      box.add(corner);
+      farthest_corner = std::max(farthest_corner, glm::length(corner - light));
+    }
+  }
+  if (!(nearest > kTooNear * farthest_corner)) return {Reach::Kind::unbounded, 0.0};
+
+  const glm::dvec3 to_centre = (box.low + box.high) * 0.5 - light;
+  const double centre_distance = glm::length(to_centre);
+  Pyramid pyramid;
+  Basis basis{};
+  if (centre_distance > 0.0) {
+    basis = basis_about(to_centre / centre_distance);
+    pyramid = pyramid_round(light, casting, basis, farthest_corner);
+  }
+  double farthest = 0.0, farthest_z = 0.0;
+  visit_clipped(receivers, pyramid.region, [&](const glm::dvec3& p) {
+    farthest = std::max(farthest, glm::length(p - light));
+    if (pyramid.usable) farthest_z = std::max(farthest_z, glm::dot(basis.axis, p - light));
+  });
+  double factor = farthest / nearest;
+  if (pyramid.usable) factor = std::min(factor, farthest_z / pyramid.nearest_z);
+  return reach_of(factor * (1.0 + kReachMargin), 1.0);
+}
+
+Reach reach_in_direction(const glm::dvec3& towards_light, std::span<const WorldTriangle> casting,
+                         const Receivers& receivers) {
+  const Basis basis = basis_about(-towards_light);
+  Box box;
+  for (const WorldTriangle& triangle : casting) {
+    for (const glm::dvec3& corner : triangle) box.add(basis(corner));
+  }
+  const double widen = kWiden * (1.0 + glm::length(box.high - box.low));
+  const Region region{{basis.u, box.low.x - widen},
+                      {-basis.u, -box.high.x - widen},
+                      {basis.v, box.low.y - widen},
+                      {-basis.v, -box.high.y - widen},
+                      {basis.axis, box.low.z - widen}};
+  double farthest = -kInfinity;
+  visit_clipped(receivers, region, [&](const glm::dvec3& p) {
+    farthest = std::max(farthest, glm::dot(basis.axis, p));
+  });
+  if (farthest == -kInfinity) return {Reach::Kind::none, 0.0};
+  return reach_of((farthest - box.low.z + widen) * (1.0 + kReachMargin), 0.0);
+}
+
+}  // namespace
+
+Receivers::Receivers(const Scene& scene) {
+  for (const Object& object : scene.objects) {
+    raster::require(object.model != nullptr, "an object has a model");
+    if (object.receives) add(*object.model, object.world_from_model);
+  }
+}
+
+void Receivers::add(const Model& model, const glm::mat4& world_from_model) {
+  const glm::dmat4 world(world_from_model);
+  Group group;
+  Box box;
+  for (const Part& part : model.parts) {
+    const Mesh& mesh = part.mesh;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      WorldTriangle triangle;
+      bool finite = true;
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        raster::require(mesh.indices[i + corner] < mesh.positions.size(),
+                        "a mesh's index names one of its positions");
+        triangle[corner] = glm::dvec3(world * glm::dvec4(mesh.positions[mesh.indices[i + corner]]));
+        const glm::dvec3& p = triangle[corner];
+        finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+      }
+      if (!finite) continue;
+      for (const glm::dvec3& corner : triangle) box.add(corner);
+      group.triangles.push_back(triangle);
+    }
+  }
+  if (group.triangles.empty()) return;
+  group.low = box.low;
+  group.high = box.high;
+  groups_.push_back(std::move(group));
+}
+
+Reach find_reach(const glm::vec4& light_world, std::span<const WorldTriangle> casting,
+                 const Receivers& receivers) {
+  if (casting.empty()) return {Reach::Kind::none, 0.0};
+  const glm::dvec3 light(light_world);
+  if (light_world.w != 0.0f) return reach_from_point(light, casting, receivers);
+  return reach_in_direction(glm::normalize(light), casting, receivers);
+}
+
+}  // namespace gnomon::pipeline

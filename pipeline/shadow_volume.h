@@ -1,0 +1,53 @@
+// Closed shadow volumes (Haller 2003, section 3.1.1 and figure 3): front cap, sides from the
+// silhouette, back cap, in the caster's model space.
+// Invariant: the triangles are a closed 2-chain for any caster mesh - every directed edge is run
+// equally often both ways - because the volume is the sum of the casting triangles' prisms, whose
+// inner walls cancel. Each vertex is swept once, so there are no cracks. The front cap has the bits
+// of the caster's own vertices: drawn with the caster's clip_from_model it coincides with it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include "pipeline/silhouette.h"
+#include "pipeline/topology.h"
+#include "raster/mesh_view.h"
+
+namespace gnomon::pipeline {
+
+/// Counter-clockwise from outside, in the order front cap, sides, back cap. Positions with w = 0
+/// are points at infinity.
+struct ShadowVolume {
+  std::vector<glm::vec4> positions;
+  std::vector<std::uint32_t> indices;
+  /// Indices (three a triangle) of the front cap and of the sides; the rest is the back cap.
+  std::size_t front_cap_indices = 0, side_indices = 0;
+
+  raster::MeshView view() const { return {positions, indices}; }
+  bool empty() const { return indices.empty(); }
+};
+
+/// To infinity: v goes to the direction (v - L, 0), or to (-d, 0) for a direction. In the latter
+/// case the back cap is one point and falls away with every triangle that has it twice; those have
+/// no boundary, so the chain stays closed.
+/// Preconditions of all three: `silhouette` belongs to `topology` and `light_model`
+/// (light_in_model).
+ShadowVolume extrude_to_infinity(const Topology& topology, const Silhouette& silhouette,
+                                 const glm::dvec4& light_model);
+
+/// v goes to L + amount * (v - L) for a point, by `amount` metres away from the light for a
+/// direction (Reach::amount).
+ShadowVolume extrude_by(const Topology& topology, const Silhouette& silhouette,
+                        const glm::dvec4& light_model, double amount);
+
+/// The paper's finite volume: each vertex moves radius_m metres (in the world) along its ray.
+/// Precondition: radius_m is positive and finite.
+ShadowVolume extrude_by_radius(const Topology& topology, const Silhouette& silhouette,
+                               const glm::dvec4& light_model, const glm::mat4& world_from_model,
+                               double radius_m);
+
+}  // namespace gnomon::pipeline
