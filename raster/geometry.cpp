@@ -97,8 +97,8 @@ bool set_up(const DrawSetup& setup, std::array<ProjectedVertex, 3> v, std::uint3
     out.b[k] = dx;
     out.c[k] =
         static_cast<std::int64_t>(dy) * from.x_fx - static_cast<std::int64_t>(dx) * from.y_fx;
-    // Counter-clockwise with y upwards: a left edge goes down, a top edge goes left.
-    out.bias[k] = dy < 0 || (dy == 0 && dx < 0) ? 0 : 1;
+    // Counter-clockwise with y upwards: a left edge goes down, a bottom edge goes right.
+    out.bias[k] = dy < 0 || (dy == 0 && dx > 0) ? 0 : 1;
     out.attributes.inverse_w[k] = v[k].inverse_w;
     out.attributes.weights[k] = v[k].weights;
   }

@@ -1,0 +1,18 @@
+// The slow, obvious renderer that is the oracle of raster/: one loop a pixel over the whole target,
+// every draw after the other; no tiles in the walk, no blocks, no masks, no incremental sums. It
+// follows docs/semantics.md, not the fast code; of raster/ it uses only the frame's data, the
+// colour of a fragment (shade) and the buffers.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "raster/frame.h"
+
+namespace gnomon::reference {
+
+/// Effect: that of raster::execute, byte for byte.
+void execute(const raster::Frame& frame,
+             std::size_t commands = std::numeric_limits<std::size_t>::max());
+
+}  // namespace gnomon::reference
