@@ -39,13 +39,17 @@ bool inside(const std::optional<Rect>& rect, std::int64_t x, std::int64_t y) {
                    y < std::int64_t{rect->y} + rect->height);
 }
 
-/// Distances to w, near, far, left, right, bottom, top, in the order in which they clip.
-std::vector<double> distances(const glm::dvec4& p, const Rect& viewport, bool depth_clamp) {
+/// Distances to w, near, far, left, right, bottom, top, in the order in which they clip. With depth
+/// clamp nothing lies outside near and far.
+std::array<double, 7> distances(const glm::dvec4& p, const Rect& viewport, bool depth_clamp) {
   const double gx = 2.0 * kGuardPixels / viewport.width, gy = 2.0 * kGuardPixels / viewport.height;
-  std::vector<double> d{p.w - kSmallestW};
-  if (!depth_clamp) d.insert(d.end(), {p.w + p.z, p.w - p.z});
-  d.insert(d.end(), {gx * p.w + p.x, gx * p.w - p.x, gy * p.w + p.y, gy * p.w - p.y});
-  return d;
+  return {p.w - kSmallestW,
+          depth_clamp ? 1.0 : p.w + p.z,
+          depth_clamp ? 1.0 : p.w - p.z,
+          gx * p.w + p.x,
+          gx * p.w - p.x,
+          gy * p.w + p.y,
+          gy * p.w - p.y};
 }
 
 std::vector<Vertex> clip(const std::array<glm::vec4, 3>& triangle, const Rect& viewport,
@@ -55,8 +59,7 @@ std::vector<Vertex> clip(const std::array<glm::vec4, 3>& triangle, const Rect& v
     polygon[static_cast<std::size_t>(i)].clip = glm::dvec4(triangle[static_cast<std::size_t>(i)]);
     polygon[static_cast<std::size_t>(i)].weights[i] = 1.0;
   }
-  const std::size_t planes = depth_clamp ? 5 : 7;
-  for (std::size_t plane = 0; plane < planes; ++plane) {
+  for (std::size_t plane = 0; plane < 7; ++plane) {
     std::vector<Vertex> kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const Vertex& a = polygon[i];
