@@ -1,7 +1,10 @@
 #include "raster/executor.h"
 
 #include <algorithm>
+#include <optional>
 
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -15,6 +18,11 @@ void for_each_chunk(std::size_t count, std::size_t chunk, int threads,
     for (std::size_t i = 0; i < chunks; ++i) run(i);
     return;
   }
+  // The scheduler keeps no more workers than the machine has unless it is told to.
+  std::optional<tbb::global_control> more_workers;
+  if (threads > tbb::info::default_concurrency())
+    more_workers.emplace(tbb::global_control::max_allowed_parallelism,
+                         static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
   arena.execute([&] {
     tbb::parallel_for(

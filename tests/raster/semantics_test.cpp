@@ -1,0 +1,296 @@
+// The rules of docs/semantics.md on frames small enough to know the answer by hand (oracle: closed
+// forms and invariants).
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "random_frames.h"
+#include "raster/execute.h"
+
+using namespace gnomon::raster;
+using gnomon::random_frames::Random;
+
+namespace {
+
+/// A clip-space position at window coordinates (x, y) of a width x height target, depth z in [0,
+/// 1].
+glm::vec4 at_window(double x, double y, int width, int height, double z = 0.5) {
+  return {static_cast<float>(2.0 * x / width - 1.0), static_cast<float>(2.0 * y / height - 1.0),
+          static_cast<float>(2.0 * z - 1.0), 1.0f};
+}
+
+State counting() {
+  StencilFace face;
+  face.pass = StencilOp::incr_wrap;
+  return {.stencil = StencilState::both(face), .color = ColorState::off()};
+}
+
+State signed_counting() {
+  State state = counting();
+  state.stencil->back.pass = StencilOp::decr_wrap;
+  return state;
+}
+
+void draw_positions(Frame& frame, const State& state, std::vector<glm::vec4> positions,
+                    int ref = 0) {
+  auto kept = std::make_shared<std::pair<std::vector<glm::vec4>, std::vector<std::uint32_t>>>();
+  kept->first = std::move(positions);
+  for (std::uint32_t i = 0; i < kept->first.size(); ++i) kept->second.push_back(i);
+  frame.keep(kept);
+  frame.draw({.state = state,
+              .mesh = {.positions = kept->first, .indices = kept->second},
+              .stencil_ref = ref});
+}
+
+int total(const StencilBuffer& stencil) {
+  int sum = 0;
+  for (const std::uint8_t s : stencil.to_rows()) sum += s;
+  return sum;
+}
+
+}  // namespace
+
+TEST(Coverage, TiesGoToLeftAndBottomEdges) {
+  StencilBuffer stencil(8, 8);
+  Frame frame;
+  frame.begin_pass("square", {.stencil = &stencil});
+  const auto p = [](double x, double y) { return at_window(x, y, 8, 8); };
+  draw_positions(frame, counting(),
+                 {p(1.5, 1.5), p(5.5, 1.5), p(5.5, 5.5), p(1.5, 1.5), p(5.5, 5.5), p(1.5, 5.5)});
+  execute(frame);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(stencil.at(x, y), x >= 1 && x <= 4 && y >= 1 && y <= 4) << x << ' ' << y;
+}
+
+TEST(Coverage, AFanOfSharedEdgesCoversEachPixelOnce) {
+  Random random(5);
+  for (int round = 0; round < 50; ++round) {
+    StencilBuffer stencil(90, 70);
+    Frame frame;
+    frame.begin_pass("fan", {.stencil = &stencil});
+    // The hub lies anywhere inside; the rim is the target's own border, so every pixel is covered.
+    const double x = random.integer(0, 90 * 256) / 256.0, y = random.integer(0, 70 * 256) / 256.0;
+    std::vector<glm::vec4> rim;
+    for (int i = 0; i < 9; ++i) rim.push_back(at_window(10.0 * i, 0, 90, 70));
+    for (int i = 0; i < 7; ++i) rim.push_back(at_window(90, 10.0 * i, 90, 70));
+    for (int i = 9; i > 0; --i) rim.push_back(at_window(10.0 * i, 70, 90, 70));
+    for (int i = 7; i > 0; --i) rim.push_back(at_window(0, 10.0 * i, 90, 70));
+    std::vector<glm::vec4> triangles;
+    for (std::size_t i = 0; i < rim.size(); ++i)
+      for (const glm::vec4& v : {at_window(x, y, 90, 70), rim[i], rim[(i + 1) % rim.size()]})
+        triangles.push_back(v);
+    draw_positions(frame, counting(), triangles);
+    execute(frame);
+    for (const std::uint8_t s : stencil.to_rows()) ASSERT_EQ(s, 1) << "round " << round;
+  }
+}
+
+TEST(Coverage, AClosedSurfaceCountsTheSameAtEveryPixelHoweverItIsCut) {
+  // Invariant: without a depth test every line of sight leaves the surface as often as it enters,
+  // once more if the eye is inside.
+  int enclosing = 0;
+  Random random(17);
+  for (int round = 0; round < 300; ++round) {
+    StencilBuffer stencil(64, 48);
+    Frame frame;
+    frame.begin_pass("tetrahedron", {.stencil = &stencil});
+    std::array<glm::vec4, 4> v;
+    for (glm::vec4& p : v) {
+      // Some vertices behind the eye or at infinity: the surface is cut by w > 0 and the guard band
+      // only.
+      const float w = random.chance(0.2f) ? 0.0f : random.real(-1.0f, 2.0f);
+      const float x = random.real(-3.0f, 3.0f), y = random.real(-3.0f, 3.0f);
+      p = {x, y, random.real(-3.0f, 3.0f), w};
+    }
+    State state = signed_counting();
+    state.depth_clamp = true;
+    draw_positions(frame, state,
+                   {v[0], v[1], v[2], v[0], v[2], v[3], v[0], v[3], v[1], v[1], v[3], v[2]});
+    execute(frame);
+    const int count = stencil.at(0, 0);
+    ASSERT_TRUE(count == 0 || count == 1 || count == 255) << "round " << round;
+    for (const std::uint8_t s : stencil.to_rows()) ASSERT_EQ(s, count) << "round " << round;
+    enclosing += count != 0;
+  }
+  EXPECT_GT(enclosing, 5);
+  EXPECT_LT(enclosing, 150);
+}
+
+TEST(Coverage, MovingByWholePixelsMovesThePicture) {
+  Random random(3);
+  StencilBuffer here(200, 150), there(200, 150);
+  std::vector<glm::vec4> a, b;
+  for (int i = 0; i < 90; ++i) {
+    const double x = random.integer(0, 100 * 256) / 256.0, y = random.integer(0, 80 * 256) / 256.0;
+    a.push_back(at_window(x, y, 200, 150));
+    b.push_back(at_window(x + 67, y + 35, 200, 150));
+  }
+  Frame frame;
+  frame.begin_pass("here", {.stencil = &here});
+  draw_positions(frame, signed_counting(), a);
+  frame.begin_pass("there", {.stencil = &there});
+  draw_positions(frame, signed_counting(), b);
+  execute(frame);
+  for (int y = 0; y < 150; ++y)
+    for (int x = 0; x < 200; ++x) {
+      const bool inside = x >= 67 && y >= 35;
+      ASSERT_EQ(there.at(x, y), inside ? here.at(x - 67, y - 35) : 0);
+    }
+  EXPECT_GT(total(here), 0);
+}
+
+TEST(Depth, EqualRedrawsExactlyTheVisibleFragments) {
+  Random random(11);
+  ColorBuffer color(120, 90);
+  DepthBuffer depth(120, 90);
+  StencilBuffer stencil(120, 90);
+  std::vector<glm::vec4> triangles;
+  for (int i = 0; i < 120; ++i) {
+    const float w = random.real(0.2f, 3.0f);
+    const float x = random.real(-1.5f, 1.5f), y = random.real(-1.5f, 1.5f);
+    triangles.push_back({x * w, y * w, random.real(-1.1f, 1.1f) * w, w});
+  }
+  Frame frame;
+  frame.begin_pass("depth", {&color, &depth, &stencil});
+  State first = counting();
+  first.stencil->front.pass = first.stencil->back.pass = StencilOp::replace;
+  first.depth = DepthState{};
+  draw_positions(frame, first, triangles, 7);
+  State second = counting();
+  second.depth = DepthState{CompareFunc::equal, false};
+  draw_positions(frame, second, triangles);
+  execute(frame);
+  int hit = 0;
+  for (int y = 0; y < 90; ++y)
+    for (int x = 0; x < 120; ++x) {
+      const int s = stencil.at(x, y);
+      // Covered pixels hold 7 and at least one equal fragment; others are untouched.
+      ASSERT_TRUE(s == 0 || s >= 8) << s;
+      hit += s != 0;
+    }
+  EXPECT_GT(hit, 1000);
+}
+
+TEST(Depth, StaysWithinOneUnitOfTheExactPlane) {
+  // Oracle: the plane through the snapped vertices in long double (64-bit mantissa; error far below
+  // a unit).
+  Random random(23);
+  for (int round = 0; round < 400; ++round) {
+    const int width = round % 4 ? 100 : 4096, height = round % 4 ? 80 : 70;
+    DepthBuffer depth(width, height);
+    std::array<std::array<double, 3>, 3> v{};
+    for (auto& p : v)
+      p = {random.integer(0, width * 256) / 256.0, random.integer(0, height * 256) / 256.0,
+           random.integer(0, 1 << 23) / static_cast<double>(1 << 23)};
+    Frame frame;
+    frame.begin_pass("triangle", {.depth = &depth});
+    frame.clear({.depth = 1.0f});
+    std::vector<glm::vec4> clip;
+    for (const auto& p : v) clip.push_back(at_window(p[0], p[1], width, height, p[2]));
+    draw_positions(frame, {.depth = DepthState{CompareFunc::always, true}}, clip);
+    execute(frame);
+    const long double x1 = v[1][0] - v[0][0], y1 = v[1][1] - v[0][1], z1 = v[1][2] - v[0][2];
+    const long double x2 = v[2][0] - v[0][0], y2 = v[2][1] - v[0][1], z2 = v[2][2] - v[0][2];
+    const long double area = x1 * y2 - x2 * y1;
+    if (area == 0) continue;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        if (depth.at(x, y) == 0xffffff) continue;
+        const long double dx = x + 0.5L - v[0][0], dy = y + 0.5L - v[0][1];
+        const long double z =
+            v[0][2] + (dx * (z1 * y2 - z2 * y1) + dy * (x1 * z2 - x2 * z1)) / area;
+        ASSERT_LE(std::abs(depth.at(x, y) - z * 0xffffff), 1.0L + 0x1p-9L) << "round " << round;
+      }
+  }
+}
+
+TEST(Depth, ClampKeepsFragmentsBeyondTheFarPlane) {
+  DepthBuffer depth(4, 4);
+  for (const bool clamp : {false, true}) {
+    Frame frame;
+    frame.begin_pass("beyond", {.depth = &depth});
+    frame.clear({.depth = 0.25f});
+    State state{.depth = DepthState{CompareFunc::always, true}, .depth_range = {0.0f, 0.75f}};
+    state.depth_clamp = clamp;
+    draw_positions(frame, state, {{-3, -3, 2, 1}, {9, -3, 2, 1}, {-3, 9, 2, 1}});
+    execute(frame);
+    const auto value = static_cast<std::uint32_t>(std::lrint((clamp ? 0.75 : 0.25) * 0xffffff));
+    EXPECT_EQ(depth.at(2, 2), value);
+  }
+}
+
+TEST(Depth, OffsetUnitsMoveByWholeUnits) {
+  for (const DepthFormat format : {DepthFormat::d24, DepthFormat::d16}) {
+    DepthBuffer plain(5, 5, format), moved(5, 5, format);
+    const std::vector<glm::vec4> slope{{-1, -1, -0.3f, 1}, {3, -1, 0.2f, 1}, {-1, 3, 0.1f, 1}};
+    Frame frame;
+    State state{.depth = DepthState{CompareFunc::always, true}};
+    frame.begin_pass("plain", {.depth = &plain});
+    draw_positions(frame, state, slope);
+    state.polygon_offset = PolygonOffset{0.0f, -3.0f};
+    frame.begin_pass("moved", {.depth = &moved});
+    draw_positions(frame, state, slope);
+    execute(frame);
+    for (int y = 0; y < 5; ++y)
+      for (int x = 0; x < 5; ++x) EXPECT_EQ(moved.at(x, y) + 3, plain.at(x, y));
+  }
+}
+
+TEST(Stencil, IncrementWrapGoesFrom255To0AndIncrementStays) {
+  for (const auto& [op, expected] : {std::pair{StencilOp::incr_wrap, 0}, {StencilOp::incr, 255}}) {
+    StencilBuffer stencil(3, 3);
+    Frame frame;
+    frame.begin_pass("wrap", {.stencil = &stencil});
+    frame.clear({.stencil = 255});
+    State state = counting();
+    state.stencil->front.pass = op;
+    draw_positions(frame, state, {{-1, -1, 0, 1}, {3, -1, 0, 1}, {-1, 3, 0, 1}});
+    execute(frame);
+    EXPECT_EQ(stencil.at(1, 1), expected);
+  }
+}
+
+TEST(Blending, DividesExactlyAndRoundsToNearest) {
+  // Oracle: the rational (255 - a) d / 255, rounded, for every a and d.
+  ColorBuffer color(256, 256);
+  std::vector<std::uint8_t> ramp;
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 256; ++x)
+      for (int c = 0; c < 3; ++c) ramp.push_back(static_cast<std::uint8_t>(x));
+  Frame frame;
+  frame.begin_pass("blend", {.color = &color});
+  frame.blit({.image = {ramp.data(), 256, 256, 3, 256 * 3}});
+  const Blend darken{.src_color = BlendFactor::zero, .dst_color = BlendFactor::one_minus_src_alpha};
+  for (int a = 0; a < 256; ++a) {
+    auto quad = std::make_shared<std::array<glm::vec4, 3>>(
+        std::array<glm::vec4, 3>{glm::vec4{-1, -1, 0, 1}, {3, -1, 0, 1}, {-1, 3, 0, 1}});
+    frame.keep(quad);
+    static const std::array<std::uint32_t, 3> indices{0, 1, 2};
+    frame.draw({.state = {.color = {.blend = darken}, .scissor = Rect{0, a, 256, 1}},
+                .mesh = {.positions = *quad, .indices = indices},
+                .shading = Flat{{0, 0, 0, static_cast<float>(a) / 255.0f}, {}}});
+  }
+  execute(frame);
+  for (int a = 0; a < 256; ++a)
+    for (int d = 0; d < 256; ++d)
+      ASSERT_EQ(color.rgba8().at(d, a)[0], (2 * (255 - a) * d + 255) / 510) << a << ' ' << d;
+}
+
+TEST(Frame, MisuseNamesTheRule) {
+  Frame frame;
+  EXPECT_THROW(frame.begin_pass("none", {}), std::invalid_argument);
+  EXPECT_THROW(frame.clear({}), std::invalid_argument);
+  ColorBuffer color(2, 2);
+  DepthBuffer depth(3, 2);
+  EXPECT_THROW(frame.begin_pass("sizes", {.color = &color, .depth = &depth}),
+               std::invalid_argument);
+  frame.begin_pass("color", {.color = &color});
+  EXPECT_THROW(frame.clear({.depth = 1.0f}), std::invalid_argument);
+  const std::array<glm::vec4, 1> one{};
+  const std::array<std::uint32_t, 3> wrong{0, 0, 1};
+  EXPECT_THROW(frame.draw({.mesh = {.positions = one, .indices = wrong}}), std::invalid_argument);
+  EXPECT_THROW(ColorBuffer(0, 5), std::invalid_argument);
+  EXPECT_THROW(depth.at(3, 0), std::invalid_argument);
+}
