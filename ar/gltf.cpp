@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
@@ -357,6 +358,37 @@ class Reader {
   std::size_t vertices_ = 0;
 };
 
+/// The middle of the box around a node's mesh. `budget` bounds the vertices that one file may make
+/// this read.
+glm::dvec3 center_of(const Document& document, const PlacedNode& placed, std::size_t& budget) {
+  const tinygltf::Node& node = document.gltf.nodes[static_cast<std::size_t>(placed.index)];
+  const glm::dvec3 origin(placed.world_from_node[3]);
+  const auto& meshes = document.gltf.meshes;
+  if (node.mesh < 0) return origin;
+  const std::string place = node_place(document, placed.index);
+  if (static_cast<std::size_t>(node.mesh) >= meshes.size())
+    fail(document.path,
+         fmt::format("{}: mesh {} is not one of {}", place, node.mesh, meshes.size()));
+  std::optional<glm::dvec3> low, high;
+  for (const auto& primitive : meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+    const auto position = primitive.attributes.find("POSITION");
+    if (position == primitive.attributes.end()) continue;
+    const std::size_t count = gltf::value_count(document, position->second, place);
+    if (count > budget)
+      fail(document.path,
+           fmt::format("{}: more than {} vertices in all", place, gltf::kMaxVertices));
+    budget -= count;
+    const std::vector<float> values = gltf::read_floats(document, position->second, 3, place);
+    for (std::size_t i = 0; i < values.size(); i += 3) {
+      const glm::dvec3 p(placed.world_from_node *
+                         glm::dvec4(values[i], values[i + 1], values[i + 2], 1.0));
+      low = low ? glm::min(*low, p) : p;
+      high = high ? glm::max(*high, p) : p;
+    }
+  }
+  return low ? (*low + *high) / 2.0 : origin;
+}
+
 }  // namespace
 
 GltfModel read_gltf(const std::filesystem::path& path) {
@@ -370,9 +402,11 @@ GltfModel read_gltf(const std::filesystem::path& path) {
 std::vector<GltfNode> read_gltf_nodes(const std::filesystem::path& path) {
   const Document document = gltf::load_document(path);
   std::vector<GltfNode> nodes;
+  std::size_t budget = gltf::kMaxVertices;
   for (const PlacedNode& placed : placed_nodes(document)) {
     const auto i = static_cast<std::size_t>(placed.index);
     nodes.push_back({document.gltf.nodes[i].name, placed.world_from_node,
+                     center_of(document, placed, budget),
                      i < document.node_extras.size() ? document.node_extras[i] : ""});
   }
   return nodes;

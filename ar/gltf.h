@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 
 #include "pipeline/mesh.h"
 
@@ -25,6 +26,8 @@ struct GltfModel {
 struct GltfNode {
   std::string name;
   glm::dmat4 world_from_node{1.0};
+  /// The middle of the box around its own mesh in the world; its origin if it has none.
+  glm::dvec3 center_m{0.0};
   /// The node's `extras` as JSON text; empty without.
   std::string extras;
 };

@@ -1,0 +1,102 @@
+// The scene as a person writes it: one TOML file that names the camera, the tags, the models, the
+// lights and the method's settings. The format, every key with unit and default: docs/scene.md.
+// Strict: an unknown key, a wrong type, a value out of range, a duplicate name or a missing file is
+// an InputError that names file, line, table, key and value.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "ar/tag_layout.h"
+#include "ar/tags.h"
+#include "pipeline/mesh.h"
+#include "pipeline/scene.h"
+
+namespace gnomon::ar {
+
+/// What a scene file says it is, and what this reader accepts.
+inline constexpr const char* kSceneFormat = "gnomon-scene 1";
+
+struct SceneObject {
+  std::string name;
+  pipeline::Role role = pipeline::Role::virtual_object;
+  std::filesystem::path model;
+  /// The body that carries it; empty for the world.
+  std::string attached_to;
+  /// Pose and scale; the body is the world if attached_to is empty. Never mirrors.
+  glm::dmat4 body_from_object{1.0};
+  bool casts = true, receives = true;
+};
+
+enum class ShadowMethod { automatic, zpass, zfail };
+
+/// How far shadow volumes reach: as far as needed, without end, or so many metres from the light.
+struct AutomaticReach {
+  bool operator==(const AutomaticReach&) const = default;
+};
+struct InfiniteReach {
+  bool operator==(const InfiniteReach&) const = default;
+};
+using VolumeReach = std::variant<AutomaticReach, InfiniteReach, double>;
+
+struct ShadowSettings {
+  ShadowMethod method = ShadowMethod::automatic;
+  VolumeReach volume = AutomaticReach{};
+  /// Darken also where a phantom's shadow is in the photograph already (the paper to the letter).
+  bool double_shadows = false;
+};
+
+/// The one-euro filter that calms tag jitter; its numbers as in docs/scene.md.
+struct FilterSettings {
+  bool on = true;
+  double min_cutoff_hz = 1.5, beta_per_m = 60.0, beta_per_rad = 20.0, speed_cutoff_hz = 1.0;
+};
+
+/// A ROS tags.yaml: its tags' family, and the bundle that is the world (empty: none).
+struct TagsYaml {
+  std::filesystem::path file;
+  std::string family, world;
+};
+
+struct SceneFile {
+  std::filesystem::path file;
+
+  std::filesystem::path camera_file;
+  double near_m = 0.02, far_m = 100.0;
+  /// A fixed camera in OpenCV's axes (x right, y down, z forward), used instead of tags.
+  std::optional<glm::dmat4> world_from_camera;
+
+  /// Families to look for: those named, or else those that the tags use.
+  std::vector<std::string> families;
+  std::vector<CustomDictionary> dictionaries;
+  /// The camera's response curve, or its gamma, for corners in linear light. At most one of them.
+  std::optional<std::filesystem::path> response_file;
+  std::optional<double> gamma;
+  TagLayout tags;
+  std::optional<TagsYaml> tags_yaml;
+
+  std::vector<SceneObject> objects;
+  std::vector<pipeline::Light> lights;
+  glm::vec3 ambient{0.3f};
+  ShadowSettings shadow;
+  FilterSettings filter;
+};
+
+/// Reads a scene file; paths come out joined to its folder, and every file that it names exists.
+/// Throws InputError "FILE:LINE: [TABLE 'NAME'].KEY: what is wrong". Reads the models that lights
+/// take a node from, no others.
+SceneFile read_scene(const std::filesystem::path& path);
+
+/// The model of each object, in the order of scene.objects; a file that several objects name is
+/// read once and shared. Notes of the reader go to `notes` if given. Throws InputError.
+std::vector<std::shared_ptr<const pipeline::Model>> load_models(
+    const SceneFile& scene, std::vector<std::string>* notes = nullptr);
+
+}  // namespace gnomon::ar
