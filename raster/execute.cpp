@@ -112,7 +112,7 @@ void execute(const Frame& frame, const ExecuteOptions& options) {
   require(options.threads >= 0, "a number of threads is not negative");
   std::vector<Job> jobs;
   Size size;
-  std::size_t remaining = options.commands;
+  std::size_t number = 0;
   for (const Pass& pass : frame.passes()) {
     if (size_of(pass.targets) != size) {
       run_group(jobs, size, options.threads);
@@ -120,9 +120,9 @@ void execute(const Frame& frame, const ExecuteOptions& options) {
       size = size_of(pass.targets);
     }
     for (const Command& command : pass.commands) {
-      if (remaining == 0) break;
-      --remaining;
-      jobs.push_back({&command, pass.targets, {}, {}, {}});
+      const bool wanted = number >= options.first_command && number < options.commands;
+      ++number;
+      if (wanted) jobs.push_back({&command, pass.targets, {}, {}, {}});
     }
   }
   run_group(jobs, size, options.threads);

@@ -12,7 +12,9 @@ namespace gnomon::raster {
 struct ExecuteOptions {
   /// 0: as many as the machine has; 1: all work on the calling thread, no scheduler is touched.
   int threads = 0;
-  /// Run only the first so many commands.
+  /// Leave out the first so many commands (they were run before).
+  std::size_t first_command = 0;
+  /// Stop before this command, counted from the frame's first one.
   std::size_t commands = std::numeric_limits<std::size_t>::max();
 };
 

@@ -1,0 +1,151 @@
+#include "ar/augment.h"
+
+#include <chrono>
+
+#include "ar/composite.h"
+#include "ar/false_color.h"
+#include "pipeline/light_samples.h"
+#include "raster/execute.h"
+
+namespace gnomon::ar {
+
+namespace {
+
+/// Milliseconds since it was made or last asked.
+class Stopwatch {
+ public:
+  double lap_ms() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+Image channel_at_photo(const PinholeView& view, const std::vector<std::uint8_t>& rgba_rows,
+                       std::size_t channel) {
+  std::vector<std::uint8_t> plane;
+  plane.reserve(rgba_rows.size() / 4);
+  for (std::size_t i = channel; i < rgba_rows.size(); i += 4) plane.push_back(rgba_rows[i]);
+  return {view.photo_width(), view.photo_height(), 1,
+          at_photo_pixels<std::uint8_t>(view, plane, 0)};
+}
+
+Image color_at_photo(const PinholeView& view, const raster::ColorBuffer& color) {
+  const std::vector<std::uint8_t> rows = color.to_rgba8_rows();
+  std::vector<std::array<std::uint8_t, 3>> plane;
+  plane.reserve(rows.size() / 4);
+  for (std::size_t i = 0; i < rows.size(); i += 4)
+    plane.push_back({rows[i], rows[i + 1], rows[i + 2]});
+  Image out{view.photo_width(), view.photo_height(), 3, {}};
+  for (const auto& c : at_photo_pixels(view, plane, {}))
+    out.pixels.insert(out.pixels.end(), c.begin(), c.end());
+  return out;
+}
+
+Image stencil_at_photo(const PinholeView& view, const raster::StencilBuffer& stencil) {
+  return stencil_picture(view.photo_width(), view.photo_height(),
+                         at_photo_pixels<std::uint8_t>(view, stencil.to_rows(), 0));
+}
+
+Image depth_at_photo(const PinholeView& view, const raster::DepthBuffer& depth) {
+  return depth_picture(view.photo_width(), view.photo_height(),
+                       at_photo_pixels(view, depth.to_rows(), depth.max_value()),
+                       depth.max_value());
+}
+
+}  // namespace
+
+struct Augmenter::Impl {
+  AugmentOptions options;
+  PinholeView view;
+  pipeline::TopologyCache topologies;
+  std::unique_ptr<raster::ColorBuffer> color, masks;
+  std::unique_ptr<raster::DepthBuffer> depth;
+  std::unique_ptr<raster::StencilBuffer> stencil;
+
+  Impl(const Lens& lens, const AugmentOptions& o) : options(o), view(lens, o.samples) {
+    depth = std::make_unique<raster::DepthBuffer>(view.width(), view.height());
+    stencil = std::make_unique<raster::StencilBuffer>(view.width(), view.height());
+    if (options.masks) masks = std::make_unique<raster::ColorBuffer>(view.width(), view.height());
+  }
+
+  raster::Targets targets(const pipeline::Scene& scene) {
+    const auto format = pipeline::sample_lights(scene).size() == 1 ? raster::ColorFormat::rgba8
+                                                                   : raster::ColorFormat::rgba32f;
+    if (!color || color->format() != format)
+      color = std::make_unique<raster::ColorBuffer>(view.width(), view.height(), format);
+    return {color.get(), depth.get(), stencil.get()};
+  }
+
+  /// Runs the frame, stopping after passes whose buffers are looked at.
+  void execute(const raster::Frame& frame, Augmented& out) {
+    std::size_t done = 0, end = 0;
+    bool counted = false;
+    for (const raster::Pass& pass : frame.passes()) {
+      end += pass.commands.size();
+      out.passes.push_back({pass.label, pass.commands.size()});
+      const bool counts =
+          options.masks && !counted && pass.label.starts_with(pipeline::haller_label::kAllVolumes);
+      if (!counts && !options.steps) continue;
+      raster::execute(frame, {.threads = options.threads, .first_command = done, .commands = end});
+      done = end;
+      if (counts) {
+        counted = true;
+        out.stencil_counts = stencil_at_photo(view, *stencil);
+      }
+      if (options.steps && pass.targets.color == color.get())
+        out.steps.push_back({pass.label, color_at_photo(view, *color), depth_at_photo(view, *depth),
+                             stencil_at_photo(view, *stencil)});
+    }
+    raster::execute(frame, {.threads = options.threads, .first_command = done});
+  }
+};
+
+Augmenter::Augmenter(const Lens& lens, const AugmentOptions& options)
+    : impl_(std::make_unique<Impl>(lens, options)) {}
+Augmenter::~Augmenter() = default;
+Augmenter::Augmenter(Augmenter&&) noexcept = default;
+
+const PinholeView& Augmenter::view() const { return impl_->view; }
+
+Augmented Augmenter::augment(const Image& photograph, const pipeline::Scene& scene,
+                             const glm::dmat4& world_from_camera) {
+  Impl& at = *impl_;
+  Augmented out;
+  Stopwatch watch;
+  const Image resampled = at.view.resample(photograph);
+  out.resample_ms = watch.lap_ms();
+
+  const pipeline::Camera camera =
+      at.view.camera(world_from_camera, at.options.near_m, at.options.far_m);
+  const auto picture = raster::ImageView::from_top_row(resampled.pixels.data(), resampled.width,
+                                                       resampled.height, 3);
+  pipeline::HallerOptions method;
+  method.method = at.options.method;
+  method.extrusion = at.options.extrusion;
+  method.double_shadows = at.options.double_shadows;
+  method.masks = at.masks.get();
+  method.topologies = &at.topologies;
+  const raster::Frame frame =
+      pipeline::record_haller(scene, camera, picture, at.targets(scene), method);
+  out.record_ms = watch.lap_ms();
+
+  at.execute(frame, out);
+  out.execute_ms = watch.lap_ms();
+
+  out.composite = composite(at.view, photograph, resampled, *at.color);
+  if (at.masks) {
+    const std::vector<std::uint8_t> rows = at.masks->to_rgba8_rows();
+    out.shadow_mask = channel_at_photo(at.view, rows, 0);
+    out.shadow_on_virtual = channel_at_photo(at.view, rows, 1);
+    out.object_mask = channel_at_photo(at.view, rows, 2);
+  }
+  out.composite_ms = watch.lap_ms();
+  return out;
+}
+
+}  // namespace gnomon::ar

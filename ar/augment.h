@@ -1,0 +1,79 @@
+// One photograph to one augmented photograph: the pinhole view, the method's frame, its execution,
+// and the way back through the lens.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+
+#include "ar/camera.h"
+#include "ar/image.h"
+#include "ar/pinhole_view.h"
+#include "pipeline/haller.h"
+#include "pipeline/scene.h"
+
+namespace gnomon::ar {
+
+struct AugmentOptions {
+  pipeline::VolumeMethod method = pipeline::VolumeMethod::automatic;
+  pipeline::Extrusion extrusion;
+  bool double_shadows = false;
+  /// View pixels a photograph's pixel along x and y; 0: what the lens needs (PinholeView).
+  int samples = 0;
+  /// 0: as many as the machine has.
+  int threads = 0;
+  double near_m = 0.02, far_m = 100.0;
+  /// Also make the masks and the picture of counts.
+  bool masks = true;
+  /// Also keep the buffers after every pass.
+  bool steps = false;
+};
+
+/// The buffers after a pass, in the photograph's geometry.
+struct PassPictures {
+  std::string label;
+  Image color, depth, stencil;
+};
+
+struct PassNote {
+  std::string label;
+  std::size_t commands = 0;
+};
+
+struct Augmented {
+  Image composite;
+  /// One channel, 255 or 0: a virtual shadow darkens a real surface; a real object's shadow falls
+  /// on a virtual object; a virtual object is visible. Empty unless asked for.
+  Image shadow_mask, shadow_on_virtual, object_mask;
+  /// The counts of all volumes (step 3, first light) in false colour with a legend. Empty unless
+  /// asked for.
+  Image stencil_counts;
+  std::vector<PassPictures> steps;
+  std::vector<PassNote> passes;
+  double resample_ms = 0.0, record_ms = 0.0, execute_ms = 0.0, composite_ms = 0.0;
+};
+
+/// Keeps the view and its buffers from picture to picture.
+class Augmenter {
+ public:
+  /// Errors: as PinholeView.
+  Augmenter(const Lens& lens, const AugmentOptions& options);
+  ~Augmenter();
+  Augmenter(Augmenter&&) noexcept;
+
+  const PinholeView& view() const;
+
+  /// Preconditions: three channels, the camera's size; `several_lights` scenes are drawn in
+  /// RGBA32F, one light in RGBA8 as in the paper.
+  Augmented augment(const Image& photograph, const pipeline::Scene& scene,
+                    const glm::dmat4& world_from_camera);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gnomon::ar
