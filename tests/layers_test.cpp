@@ -26,7 +26,7 @@ struct Rule {
 /// Folders that are libraries; what may not be seen above them is the point of the test.
 const std::map<std::string, Rule>& rules() {
   static const std::map<std::string, Rule> kRules{
-      {"raster", {{"raster"}, {"glm", "hwy", "tbb", "oneapi"}}},
+      {"raster", {{"raster"}, {"glm", "hwy", "tbb", "oneapi", "sanitizer"}}},
       {"pipeline",
        {{"raster", "pipeline"}, {"glm", "hwy", "tbb", "oneapi", "embree3", "meshoptimizer.h"}}},
   };
