@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <stdexcept>
 
 #include <embree3/rtcore.h>
@@ -24,35 +23,15 @@ struct Body {
   /// World-space corners, exactly those that Embree has (float32).
   std::vector<glm::vec3> corners;
   std::vector<std::uint32_t> indices;
-  bool casts = true, closed = false;
+  bool casts = true;
   Role role = Role::virtual_object;
 };
-
-/// Does every directed edge have its opposite? By exact position.
-bool is_closed(const std::vector<glm::vec3>& corners) {
-  using Point = std::array<float, 3>;
-  std::map<std::pair<Point, Point>, int> balance;
-  const auto point = [&](std::size_t i) {
-    const glm::vec3& p = corners[i];
-    return Point{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
-  };
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Point a = point(i + k), b = point(i + (k + 1) % 3);
-      if (a == b) continue;
-      balance[a < b ? std::pair(a, b) : std::pair(b, a)] += a < b ? 1 : -1;
-    }
-  }
-  return std::all_of(balance.begin(), balance.end(),
-                     [](const auto& entry) { return entry.second == 0; });
-}
 
 Body make_body(const Object& object) {
   raster::require(object.model != nullptr, "an object has a model");
   Body body;
   body.casts = object.casts;
   body.role = object.role;
-  std::vector<glm::vec3> model_corners;
   const glm::dmat4 world(object.world_from_model);
   for (const Part& part : object.model->parts) {
     raster::require(part.mesh.indices.size() % 3 == 0, "a mesh has three indices a triangle");
@@ -60,16 +39,8 @@ Body make_body(const Object& object) {
       raster::require(index < part.mesh.positions.size(),
                       "a mesh's index names one of its positions");
       const glm::vec4& p = part.mesh.positions[index];
-      model_corners.emplace_back(p);
       body.indices.push_back(static_cast<std::uint32_t>(body.indices.size()));
       body.corners.emplace_back(glm::vec3(world * glm::dvec4(p)));
-    }
-  }
-  body.closed = is_closed(model_corners);
-  // A mirroring transform turns triangles round; put the outside back outside.
-  if (glm::determinant(glm::dmat3(world)) < 0.0) {
-    for (std::size_t i = 0; i + 2 < body.indices.size(); i += 3) {
-      std::swap(body.indices[i + 1], body.indices[i + 2]);
     }
   }
   return body;
@@ -166,6 +137,7 @@ RayHit RayReference::trace(const Ray& ray, Among visible) const {
   const std::uint32_t* index = &body.indices[3 * static_cast<std::size_t>(query.hit.primID)];
   const glm::dvec3 a(body.corners[index[0]]), b(body.corners[index[1]]), c(body.corners[index[2]]);
   result.normal = glm::normalize(glm::cross(b - a, c - a));
+  if (glm::dot(result.normal, ray.direction) > 0.0) result.normal = -result.normal;
   // Again in double: Embree's own distance has float32's rounding.
   const double along = glm::dot(result.normal, ray.direction);
   const double exact = glm::dot(result.normal, a - ray.origin) / along;
@@ -191,11 +163,10 @@ RayShadow RayReference::shadow(const RayHit& hit, const glm::vec4& light, Among 
   const glm::dvec3 towards = light.w == 0.0f ? glm::dvec3(light) : glm::dvec3(light) - hit.point;
   result.faces_away = glm::dot(hit.normal, towards) <= 0.0;
   const Body& body = world_->bodies[hit.object];
-  const bool own_shadow = result.faces_away && body.closed && body.casts && belongs(body, casters);
+  const bool own_shadow = result.faces_away && body.casts && belongs(body, casters);
   const double size =
       std::max({1.0, std::abs(hit.point.x), std::abs(hit.point.y), std::abs(hit.point.z)});
   const glm::dvec3 light_side = result.faces_away ? -hit.normal : hit.normal;
-  // A surface turned away from the light looks through its own body, which is asked about apart.
   result.blocked = blocked(hit.point + light_side * (kLift * size), light, casters);
   result.in_shadow = result.blocked || own_shadow;
   return result;

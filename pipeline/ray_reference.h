@@ -1,9 +1,9 @@
 // An independent answer to what the stencil methods answer: is the light hidden from the visible
 // point? Rays through a scene by Embree in robust mode. Knows nothing of volumes, silhouettes or
 // buffers, and of no camera: it takes rays, so it serves a lens of any shape.
-// Source of what counts as shadow: a point is in shadow when a caster's triangle, from either side,
-// lies between it and the light, or when it is on a closed caster's surface that is turned away
-// from the light (the caster itself is in between then).
+// What counts as shadow: a caster's triangle, from either side, lies between the point and the
+// light; or the side of a caster's surface that is seen is turned away from the light, so that the
+// surface itself is in between.
 #pragma once
 
 #include <cstddef>
@@ -33,16 +33,16 @@ struct RayHit {
   /// Distance along the ray in units of its direction's length.
   double distance = 0.0;
   glm::dvec3 point{0.0};
-  /// Unit normal of the triangle as it is oriented in the world.
+  /// Unit normal of the triangle, on the side that is seen.
   glm::dvec3 normal{0.0};
 };
 
 /// Is the light hidden?
 struct RayShadow {
   bool in_shadow = false;
-  /// The surface is turned away from the light (n.l <= 0).
+  /// The side that is seen is turned away from the light (n.l <= 0).
   bool faces_away = false;
-  /// Something stands between, the surface's own closed body apart.
+  /// Something stands between the light and the surface's side that faces it.
   bool blocked = false;
 };
 

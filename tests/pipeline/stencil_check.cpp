@@ -1,0 +1,129 @@
+#include "tests/pipeline/stencil_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace gnomon::test {
+
+using namespace pipeline;
+
+namespace {
+
+/// Half the width, in samples, of the grid that is searched within one pixel.
+constexpr int kSearch = 6;
+
+/// Is there a place within one pixel where the rays see what the buffers show: no surface, where
+/// none was drawn; a surface and the stencil's answer, where one was; any surface, where the rays
+/// see none at the pixel's centre?
+bool edge_within_a_pixel(const RayReference& rays, const Camera& camera, const glm::vec4& light,
+                         int x, int y, bool drawn, bool centre_hit, bool counted_shadow) {
+  for (int j = -kSearch; j <= kSearch; ++j) {
+    for (int i = -kSearch; i <= kSearch; ++i) {
+      const Ray ray = window_ray(camera, x + 0.5 + static_cast<double>(i) / kSearch,
+                                 y + 0.5 + static_cast<double>(j) / kSearch);
+      const RayHit hit = rays.trace(ray);
+      if (hit.hit != drawn) continue;
+      if (!drawn || !centre_hit || rays.shadow(hit, light).in_shadow == counted_shadow) return true;
+    }
+  }
+  return false;
+}
+
+/// How far along the ray, in metres, the buffer may see two nearly coplanar surfaces displaced: two
+/// units of D24, float32's rounding of the corners, and each surface's corners snapped by up to
+/// half of 1/256 pixel in x and y, times the surface's slope.
+double tie_step_m(const Camera& camera, const RayHit& hit) {
+  const glm::dmat4 clip(camera.clip_from_world);
+  const glm::dvec3 eye(camera.eye_world);
+  const glm::dvec3 along = glm::normalize(hit.point - eye);
+  const auto window = [&](const glm::dvec3& p) {
+    const glm::dvec4 c = clip * glm::dvec4(p, 1.0);
+    return glm::dvec3(camera.width * 0.5 * c.x, camera.height * 0.5 * c.y, 0.5 * c.z) / c.w;
+  };
+  const double probe = 1e-4;
+  const double unit_m =
+      probe / std::abs(window(hit.point + probe * along).z - window(hit.point).z) / 16777215.0;
+  const glm::dvec3 side = glm::normalize(glm::cross(
+      along, std::abs(along.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0)));
+  const double pixel_m =
+      probe / glm::length(glm::dvec2(window(hit.point + probe * side) - window(hit.point)));
+  const double cosine = std::abs(glm::dot(hit.normal, along));
+  const double slope = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) / std::max(cosine, 1e-6);
+  return 2.0 * unit_m + 2e-6 + std::sqrt(2.0) / 256.0 * pixel_m * slope;
+}
+
+/// Do the rays say what the stencil says when the visible point moves towards the viewer (never
+/// into its own body) by no more than that?
+bool is_depth_tie(const RayReference& rays, const Camera& camera, const RayHit& hit,
+                  const glm::vec4& light, bool counted_shadow) {
+  const double step = tie_step_m(camera, hit);
+  const glm::dvec3 back = glm::normalize(glm::dvec3(camera.eye_world) - hit.point);
+  for (const double move : {0.25, 0.5, 1.0}) {
+    if (rays.blocked(hit.point + back * (move * step), light) == counted_shadow) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Disagreement& Disagreement::operator+=(const Disagreement& other) {
+  tested += other.tested;
+  wrong += other.wrong;
+  at_edge += other.at_edge;
+  depth_tie += other.depth_tie;
+  unexplained += other.unexplained;
+  return *this;
+}
+
+Counted count_scene(const Scene& scene, const Camera& camera, const VolumeOptions& options,
+                    bool appendix_letter) {
+  Counted counted{raster::DepthBuffer(camera.width, camera.height),
+                  raster::StencilBuffer(camera.width, camera.height)};
+  TopologyCache topologies;
+  const std::vector<PlacedObject> objects = place_objects(scene, camera, topologies);
+  const std::vector<PlacedVolume> volumes = make_volumes(
+      objects, scene.lights[0], Receivers(scene), near_region(camera.clip_from_world), options);
+  for (const PlacedVolume& volume : volumes) {
+    ++(volume.method == VolumeMethod::zpass ? counted.zpass : counted.zfail);
+  }
+  raster::Frame frame;
+  const raster::Targets targets{.depth = &counted.depth, .stencil = &counted.stencil};
+  frame.begin_pass("surfaces", targets);
+  frame.clear({.depth = 1.0f, .stencil = 0});
+  raster::State state = surface_state();
+  state.depth = raster::DepthState{};
+  for (const PlacedObject& object : objects) draw_depth(frame, object, state);
+  frame.begin_pass("volumes", targets);
+  count_volumes(frame, volumes, {.appendix_letter = appendix_letter});
+  raster::execute(frame);
+  return counted;
+}
+
+Disagreement compare_with_rays(const Counted& counted, const RayReference& rays,
+                               const Camera& camera, const glm::vec4& light) {
+  Disagreement result;
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const bool drawn = counted.depth.at(x, y) != counted.depth.max_value();
+      const RayHit hit = rays.trace(window_ray(camera, x + 0.5, y + 0.5));
+      if (!drawn && !hit.hit) continue;
+      ++result.tested;
+      const bool counted_shadow = counted.stencil.at(x, y) != 0;
+      if (hit.hit && rays.shadow(hit, light).in_shadow == counted_shadow) continue;
+      ++result.wrong;
+      if (edge_within_a_pixel(rays, camera, light, x, y, drawn, hit.hit, counted_shadow)) {
+        ++result.at_edge;
+      } else if (hit.hit && is_depth_tie(rays, camera, hit, light, counted_shadow)) {
+        ++result.depth_tie;
+      } else {
+        ++result.unexplained;
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace gnomon::test

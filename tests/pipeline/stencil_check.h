@@ -1,0 +1,40 @@
+// Stencil counts against rays: where do they disagree, and why.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pipeline/count_volumes.h"
+#include "pipeline/ray_reference.h"
+#include "raster/buffers.h"
+#include "raster/execute.h"
+
+namespace gnomon::test {
+
+/// Depth and stencil after the scene's surfaces and all its volumes of the first light.
+struct Counted {
+  raster::DepthBuffer depth;
+  raster::StencilBuffer stencil;
+  /// Volumes counted on depth pass and on depth fail.
+  std::size_t zpass = 0, zfail = 0;
+};
+Counted count_scene(const pipeline::Scene& scene, const pipeline::Camera& camera,
+                    const pipeline::VolumeOptions& options, bool appendix_letter = false);
+
+struct Disagreement {
+  std::size_t tested = 0, wrong = 0;
+  /// Wrong pixels with a place within one pixel where the rays say what the stencil says: a
+  /// silhouette or a shadow's edge passes there.
+  std::size_t at_edge = 0;
+  /// Wrong pixels whose visible point changes between light and shadow when it moves by two units
+  /// of the depth buffer (and float32's rounding of the corners).
+  std::size_t depth_tie = 0;
+  std::size_t unexplained = 0;
+  Disagreement& operator+=(const Disagreement& other);
+};
+
+/// Compares every pixel that shows a surface.
+Disagreement compare_with_rays(const Counted& counted, const pipeline::RayReference& rays,
+                               const pipeline::Camera& camera, const glm::vec4& light);
+
+}  // namespace gnomon::test
