@@ -8,6 +8,9 @@ class App;
 
 namespace gnomon::apps {
 
+/// gnomon ar SCENE: virtual objects and their shadows in a photograph or a video.
+void add_ar(CLI::App& program);
+
 /// gnomon compare A B: how much two pictures differ.
 void add_compare(CLI::App& program);
 

@@ -35,8 +35,10 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(
       "Examples:\n"
+      "  gnomon ar examples/desk/01_torus_on_house.toml --image examples/desk/background.png --out out\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
       "  gnomon COMMAND --help");
+  gnomon::apps::add_ar(program);
   gnomon::apps::add_compare(program);
 
   try {

@@ -1,0 +1,156 @@
+#include "ar/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <variant>
+
+#include "ar/camera.h"
+#include "ar/response.h"
+#include "ar/tag_layout_file.h"
+
+namespace gnomon::ar {
+
+namespace {
+
+pipeline::VolumeMethod volume_method(ShadowMethod method) {
+  switch (method) {
+    case ShadowMethod::zpass:
+      return pipeline::VolumeMethod::zpass;
+    case ShadowMethod::zfail:
+      return pipeline::VolumeMethod::zfail;
+    case ShadowMethod::automatic:
+      break;
+  }
+  return pipeline::VolumeMethod::automatic;
+}
+
+pipeline::Extrusion extrusion(const VolumeReach& reach) {
+  using Kind = pipeline::Extrusion::Kind;
+  if (const double* radius_m = std::get_if<double>(&reach))
+    return {Kind::radius, static_cast<float>(*radius_m)};
+  return {std::holds_alternative<InfiniteReach>(reach) ? Kind::infinite : Kind::automatic};
+}
+
+AugmentOptions augment_options(const SceneFile& file, const SessionOptions& options) {
+  AugmentOptions out;
+  out.method = options.method.value_or(volume_method(file.shadow.method));
+  out.extrusion = extrusion(file.shadow.volume);
+  out.double_shadows = options.double_shadows || file.shadow.double_shadows;
+  out.samples = options.samples;
+  out.threads = options.threads;
+  out.near_m = file.near_m;
+  out.far_m = file.far_m;
+  out.masks = options.masks;
+  out.steps = options.steps;
+  return out;
+}
+
+TrackerOptions tracker_options(const SceneFile& file, const SessionOptions& options) {
+  TrackerOptions out;
+  out.dictionaries = file.dictionaries;
+  if (file.response_file) out.detector.response = read_response(*file.response_file);
+  if (file.gamma) out.detector.response = Response::from_gamma(*file.gamma);
+  out.filter.reset();
+  if (file.filter.on && !options.no_filter)
+    out.filter = OneEuroOptions{file.filter.min_cutoff_hz, file.filter.beta_per_m,
+                                file.filter.beta_per_rad, file.filter.speed_cutoff_hz};
+  return out;
+}
+
+}  // namespace
+
+struct Session::Impl {
+  SceneFile file;
+  TagLayout layout;
+  Lens lens;
+  Augmenter augmenter;
+  std::optional<Tracker> tracker;
+  std::vector<std::string> notes;
+  std::vector<std::shared_ptr<const pipeline::Model>> models;
+
+  Impl(const SceneFile& scene_file, int width, int height, const SessionOptions& options)
+      : file(scene_file),
+        layout(scene_file.tags),
+        lens(camera_for_picture(read_camera(scene_file.camera_file), width, height)),
+        augmenter(lens, augment_options(scene_file, options)) {
+    models = load_models(file, &notes);
+    if (file.tags_yaml) add_bundles(*file.tags_yaml);
+    if (!layout.world.tags.empty() || !layout.bodies.empty())
+      tracker.emplace(lens.camera(), layout, tracker_options(file, options));
+  }
+
+  void add_bundles(const TagsYaml& yaml) {
+    const TagLayout read = read_tags_yaml(yaml.file, yaml.family, yaml.world);
+    layout.world.tags.insert(layout.world.tags.end(), read.world.tags.begin(),
+                             read.world.tags.end());
+    layout.bodies.insert(layout.bodies.end(), read.bodies.begin(), read.bodies.end());
+  }
+
+  /// The pose of the body with this name in the world.
+  std::optional<glm::dmat4> world_from_body(const SessionResult& result,
+                                            const std::string& name) const {
+    if (name.empty()) return glm::dmat4(1.0);
+    const auto body = std::find_if(result.track.bodies.begin(), result.track.bodies.end(),
+                                   [&](const BodyTrack& b) { return b.name == name; });
+    if (body == result.track.bodies.end()) return std::nullopt;
+    if (!file.world_from_camera) return body->world_from_body;
+    if (!body->camera_from_body) return std::nullopt;
+    return *file.world_from_camera * *body->camera_from_body;
+  }
+
+  void place(SessionResult& result) const {
+    result.scene.lights = file.lights;
+    result.scene.ambient = file.ambient;
+    for (std::size_t i = 0; i < file.objects.size(); ++i) {
+      const SceneObject& object = file.objects[i];
+      const std::optional<glm::dmat4> body = world_from_body(result, object.attached_to);
+      if (!body) {
+        result.left_out.push_back(object.name);
+        continue;
+      }
+      result.scene.objects.push_back({object.name, object.role, models[i],
+                                      glm::mat4(*body * object.body_from_object), object.casts,
+                                      object.receives});
+    }
+  }
+};
+
+Session::Session(const SceneFile& file, int width, int height, const SessionOptions& options)
+    : impl_(std::make_unique<Impl>(file, width, height, options)) {}
+Session::~Session() = default;
+Session::Session(Session&&) noexcept = default;
+
+SessionResult Session::process(const Image& picture, double time_s) {
+  SessionResult result;
+  const auto start = std::chrono::steady_clock::now();
+  if (impl_->tracker) result.track = impl_->tracker->update(picture, time_s);
+  result.track_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  result.world_from_camera = impl_->file.world_from_camera ? impl_->file.world_from_camera
+                                                           : result.track.world_from_camera;
+  if (!result.world_from_camera) return result;
+  impl_->place(result);
+  const bool placed = std::any_of(
+      result.scene.objects.begin(), result.scene.objects.end(),
+      [](const pipeline::Object& o) { return o.role == pipeline::Role::virtual_object; });
+  if (placed)
+    result.augmented = impl_->augmenter.augment(picture, result.scene, *result.world_from_camera);
+  return result;
+}
+
+const std::vector<std::string>& Session::notes() const { return impl_->notes; }
+
+std::string Session::known_tags() const {
+  std::string names;
+  const auto add = [&](const TaggedBody& body) {
+    for (const PlacedTag& tag : body.tags)
+      names += (names.empty() ? "" : ", ") + tag.id.family + " " + std::to_string(tag.id.number);
+  };
+  add(impl_->layout.world);
+  for (const TaggedBody& body : impl_->layout.bodies) add(body);
+  return names;
+}
+
+const PinholeView& Session::view() const { return impl_->augmenter.view(); }
+
+}  // namespace gnomon::ar

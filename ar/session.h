@@ -1,0 +1,66 @@
+// A scene at work: pictures come in one after another, tags place camera and bodies, and the method
+// draws.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+
+#include "ar/augment.h"
+#include "ar/image.h"
+#include "ar/scene_file.h"
+#include "ar/tracker.h"
+#include "pipeline/scene.h"
+
+namespace gnomon::ar {
+
+struct SessionOptions {
+  /// Instead of the scene file's own.
+  std::optional<pipeline::VolumeMethod> method;
+  bool double_shadows = false;
+  /// As in AugmentOptions.
+  int samples = 0, threads = 0;
+  bool masks = true, steps = false;
+  /// Poses as measured, whatever the scene file says.
+  bool no_filter = false;
+};
+
+/// One picture's outcome.
+struct SessionResult {
+  TrackResult track;
+  /// OpenCV's axes; tracked, or the scene file's own. Absent when it is not known.
+  std::optional<glm::dmat4> world_from_camera;
+  /// Objects at their places in this picture; those whose body was not seen are in `left_out`.
+  pipeline::Scene scene;
+  std::vector<std::string> left_out;
+  /// Absent when nothing could be placed: the photograph stays as it is.
+  std::optional<Augmented> augmented;
+  double track_ms = 0.0;
+};
+
+class Session {
+ public:
+  /// For pictures of this size. Reads camera, models and dictionaries.
+  /// Errors: InputError of any of these, and when the scene's camera does not fit the size.
+  Session(const SceneFile& file, int width, int height, const SessionOptions& options);
+  ~Session();
+  Session(Session&&) noexcept;
+
+  /// Times are seconds and grow. Precondition: three channels, the session's size.
+  SessionResult process(const Image& picture, double time_s);
+
+  /// What the model reader left out, one sentence each.
+  const std::vector<std::string>& notes() const;
+  /// The ids that the scene knows, for messages.
+  std::string known_tags() const;
+  const PinholeView& view() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gnomon::ar
