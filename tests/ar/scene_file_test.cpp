@@ -1,0 +1,328 @@
+#include "ar/scene_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "ar/error.h"
+#include "ar/file.h"
+#include "tests/ar/temporary_folder.h"
+
+namespace gnomon::ar {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+const fs::path kRoot = GNOMON_SOURCE_DIR;
+
+std::string text_of(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// A folder with the files that the scenes below name.
+class SceneFolder {
+ public:
+  SceneFolder() {
+    for (const char* name : {"camera.yml", "my_tags.yml", "response.json", "tags.yaml"})
+      write_file(folder_.path() / name, "a file");
+    for (const char* name : {"table.glb", "house.glb", "torus.glb"})
+      fs::copy(kRoot / "examples/desk/virtual/torus_lo.glb", folder_.path() / name);
+    fs::copy(kRoot / "examples/desk/scene.glb", folder_.path() / "room.glb");
+  }
+  fs::path write(const std::string& toml) const {
+    write_file(folder_.path() / "scene.toml", toml);
+    return folder_.path() / "scene.toml";
+  }
+  SceneFile read(const std::string& toml) const { return read_scene(write(toml)); }
+  std::string message(const std::string& toml) const {
+    try {
+      read(toml);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  const fs::path& path() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+/// Line 1 to 17; what a test adds begins in line 18.
+const std::string kSmall = R"(format = "gnomon-scene 1"
+[camera]
+file = "camera.yml"
+[[tag]]
+family = "tag36h11"
+id = 3
+size_m = 0.1
+[[object]]
+name = "torus"
+role = "virtual"
+model = "torus.glb"
+[[light]]
+name = "lamp"
+position_m = [1, 2, 3]
+[[body]]
+name = "box"
+tag = [{ family = "tag36h11", id = 4, size_m = 0.05 }]
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+// Oracle: the example as a person reads it.
+TEST(SceneFile, TheExampleOfTheDocumentationIsReadAsItSays) {
+  const SceneFolder folder;
+  const std::string doc = text_of(kRoot / "docs/scene.md");
+  const std::size_t begin = doc.find("```toml\n") + 8;
+  const SceneFile scene = folder.read(doc.substr(begin, doc.find("```", begin) - begin));
+  EXPECT_EQ(scene.camera_file, folder.path() / "camera.yml");
+  EXPECT_EQ(scene.near_m, 0.1);
+  EXPECT_EQ(scene.ambient, glm::vec3(0.4f, 0.32f, 0.24f));
+  EXPECT_THAT(scene.families, ElementsAre("tag36h11", "my_tags"));
+  EXPECT_EQ(scene.gamma, 2.2);
+  ASSERT_EQ(scene.dictionaries.size(), 1u);
+  EXPECT_EQ(scene.dictionaries[0].file, folder.path() / "my_tags.yml");
+
+  ASSERT_EQ(scene.tags.world.tags.size(), 2u);
+  const PlacedTag& tag = scene.tags.world.tags[0];
+  EXPECT_EQ(tag.id, (TagId{"tag36h11", 0}));
+  EXPECT_EQ(tag.size_m, 0.08);
+  EXPECT_EQ(tag.body_from_tag * glm::dvec4(0, 0, 1, 1), glm::dvec4(-0.2, 1.0, 0.1, 1.0))
+      << "z out of the face is the world's y";
+  ASSERT_EQ(scene.tags.bodies.size(), 1u);
+  EXPECT_EQ(scene.tags.bodies[0].name, "house");
+  EXPECT_EQ(scene.tags.bodies[0].tags[0].body_from_tag, glm::dmat4(1.0));
+
+  ASSERT_EQ(scene.objects.size(), 3u);
+  EXPECT_EQ(scene.objects[0].role, pipeline::Role::phantom);
+  EXPECT_FALSE(scene.objects[0].casts);
+  EXPECT_TRUE(scene.objects[0].receives);
+  EXPECT_EQ(scene.objects[1].attached_to, "house");
+  EXPECT_EQ(scene.objects[2].role, pipeline::Role::virtual_object);
+  EXPECT_EQ(scene.objects[2].model, folder.path() / "torus.glb");
+
+  ASSERT_EQ(scene.lights.size(), 3u);
+  EXPECT_EQ(scene.lights[0].position, glm::vec4(1.3f, 1.9f, -1.3f, 1.0f));
+  EXPECT_EQ(scene.lights[0].radius, 0.01f);
+  // The estimate of the bulb in the desk's model is about 1 cm from its place (1.35, 1.95, -1.35).
+  EXPECT_LT(glm::distance(glm::vec3(scene.lights[1].position), glm::vec3(1.35f, 1.95f, -1.35f)),
+            0.02f);
+  EXPECT_EQ(scene.lights[1].samples, 8);
+  EXPECT_EQ(scene.lights[2].position.w, 0.0f);
+  EXPECT_NEAR(glm::length(scene.lights[2].position), 1.0f, 1e-6f);
+  EXPECT_EQ(scene.shadow.method, ShadowMethod::automatic);
+  EXPECT_EQ(scene.shadow.volume, VolumeReach(AutomaticReach{}));
+  EXPECT_TRUE(scene.filter.on);
+}
+
+// Oracle: turning x by 90 degrees about z gives y; the order is x, then y, then z.
+TEST(SceneFile, RotationsTurnAboutXThenYThenZ) {
+  const SceneFolder folder;
+  const auto pose = [&](const std::string& keys) {
+    return folder
+        .read(replaced(kSmall, "model = \"torus.glb\"\n", "model = \"torus.glb\"\n" + keys))
+        .objects[0]
+        .body_from_object;
+  };
+  const auto expect_maps = [](const glm::dmat4& m, glm::dvec3 from, glm::dvec3 to) {
+    EXPECT_LT(glm::distance(glm::dvec3(m * glm::dvec4(from, 1.0)), to), 1e-12);
+  };
+  expect_maps(pose("rotation_deg = [0, 0, 90]\n"), {1, 0, 0}, {0, 1, 0});
+  // y to z (about x), then z to x (about y), then x to y (about z).
+  expect_maps(pose("rotation_deg = [90, 90, 90]\n"), {0, 1, 0}, {0, 1, 0});
+  expect_maps(pose("rotation_deg = [90, 0, 90]\n"), {0, 1, 0}, {0, 0, 1});
+  expect_maps(pose("quaternion = [0, 0, 0.7071067811865476, 0.7071067811865476]\n"), {1, 0, 0},
+              {0, 1, 0});
+  expect_maps(pose("position_m = [1, 2, 3]\nscale = 2\n"), {1, 0, 0}, {3, 2, 3});
+}
+
+// Oracle: OpenGL's camera looks along -z with y up, OpenCV's along z with y down.
+TEST(SceneFile, CameraAxesAreTurnedToOpenCvs) {
+  const SceneFolder folder;
+  const std::string identity = "world_from_camera = [[1,0,0,5],[0,1,0,6],[0,0,1,7],[0,0,0,1]]\n";
+  const auto read = [&](const std::string& keys) {
+    return *folder.read(replaced(kSmall, "[[tag]]", keys + "[[tag]]")).world_from_camera;
+  };
+  EXPECT_EQ(read(identity)[2], glm::dvec4(0, 0, 1, 0));
+  const glm::dmat4 m = read("axes = \"opengl\"\n" + identity);
+  EXPECT_EQ(m[0], glm::dvec4(1, 0, 0, 0));
+  EXPECT_EQ(m[1], glm::dvec4(0, -1, 0, 0));
+  EXPECT_EQ(m[2], glm::dvec4(0, 0, -1, 0));
+  EXPECT_EQ(m[3], glm::dvec4(5, 6, 7, 1));
+}
+
+TEST(SceneFile, DefaultsAndSettings) {
+  const SceneFolder folder;
+  SceneFile scene = folder.read(kSmall);
+  EXPECT_THAT(scene.families, ElementsAre("tag36h11"));
+  EXPECT_FALSE(scene.world_from_camera);
+  EXPECT_EQ(scene.lights[0].share, 0.5f);
+  EXPECT_EQ(scene.lights[0].samples, 1);
+  scene = folder.read(kSmall +
+                      "[shadow]\nmethod = \"zfail\"\nvolume = \"infinite\"\ndouble_shadows = true\n"
+                      "[filter]\non = false\nbeta_per_m = 3\n"
+                      "[tags_yaml]\nfile = \"tags.yaml\"\nworld = \"room\"\n");
+  EXPECT_EQ(scene.shadow.method, ShadowMethod::zfail);
+  EXPECT_EQ(scene.shadow.volume, VolumeReach(InfiniteReach{}));
+  EXPECT_TRUE(scene.shadow.double_shadows);
+  EXPECT_FALSE(scene.filter.on);
+  EXPECT_EQ(scene.filter.beta_per_m, 3.0);
+  ASSERT_TRUE(scene.tags_yaml);
+  EXPECT_EQ(scene.tags_yaml->world, "room");
+  EXPECT_EQ(folder.read(kSmall + "[shadow]\nvolume = 2.5\n").shadow.volume, VolumeReach(2.5));
+}
+
+struct Wrong {
+  const char *from, *to, *message;
+};
+
+// Oracle: the line, the table, the key and the value of each change.
+TEST(SceneFile, MistakesAreNamedByLineTableKeyAndValue) {
+  const SceneFolder folder;
+  const Wrong cases[] = {
+      {"role = \"virtual\"", "rolle = \"virtual\"",
+       "scene.toml:10: [object 'torus'].rolle: unknown key (known: name, role, model, "},
+      {"role = \"virtual\"\n", "", "scene.toml:8: [object 'torus'].role: missing"},
+      {"role = \"virtual\"", "role = \"ghost\"",
+       "scene.toml:10: [object 'torus'].role: 'ghost' is not one of virtual, phantom"},
+      {"role = \"virtual\"", "role = 5", "[object 'torus'].role: 5 is not a text in quotes"},
+      {"model = \"torus.glb\"", "model = \"no.glb\"",
+       "scene.toml:11: [object 'torus'].model: no such file: "},
+      {"model = \"torus.glb\"", "model = \"a\\u0000b\"", "has a control character"},
+      {"id = 3", "id = \"three\"", "scene.toml:6: [tag].id: 'three' is not an integer"},
+      {"id = 3", "id = 3.5", "[tag].id: 3.5 is not an integer"},
+      {"id = 3", "id = -3", "[tag].id: -3 is not within 0 to 1000000"},
+      {"id = 3", "id = 4", "scene.toml:17: [body 'box' tag].id: tag 4 of tag36h11 is used twice"},
+      {"family = \"tag36h11\"", "family = \"tag99h99\"",
+       "scene.toml:5: [tag].family: 'tag99h99' is neither a tag family that is known nor a"},
+      {"size_m = 0.1", "size_m = nan", "scene.toml:7: [tag].size_m: nan is not finite"},
+      {"size_m = 0.1", "size_m = inf", "[tag].size_m: inf is not finite"},
+      {"size_m = 0.1", "size_m = 0", "[tag].size_m: 0 is not within 0.0001 to 1000"},
+      {"size_m = 0.1", "size_m = 0.1\nworld_from_tag = [[1,0,0,0],[0,nan,0,0],[0,0,1,0],[0,0,0,1]]",
+       "scene.toml:8: [tag].world_from_tag[1][1]: nan is not finite"},
+      {"size_m = 0.1", "size_m = 0.1\nworld_from_tag = [[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]",
+       "[tag].world_from_tag: is not a rotation and translation (determinant 8)"},
+      {"size_m = 0.1", "size_m = 0.1\nworld_from_tag = [[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]",
+       "[tag].world_from_tag: is not a rotation and translation (determinant -1)"},
+      {"size_m = 0.1", "size_m = 0.1\nworld_from_tag = [[1,0,0,0],[0,1,0,0],[0,0,1,0]]",
+       "is not a list of 4 rows"},
+      {"size_m = 0.1", "size_m = 0.1\nworld_from_tag = [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]",
+       "last row [ 0, 0, 1, 1 ] is not [0, 0, 0, 1]"},
+      {"size_m = 0.1", "size_m = 0.1\nquaternion = [0, 0, 0, 2]", "has length 2, not 1"},
+      {"model = \"torus.glb\"", "model = \"torus.glb\"\nattached_to = \"bux\"",
+       "scene.toml:12: [object 'torus'].attached_to: 'bux' is neither world nor a [[body]]"},
+      {"model = \"torus.glb\"",
+       "model = \"torus.glb\"\nworld_from_object = [[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]",
+       "[object 'torus'].world_from_object: mirrors or flattens (determinant -1)"},
+      {"model = \"torus.glb\"",
+       "model = \"torus.glb\"\nscale = 2\nworld_from_object = [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,"
+       "0,1]]",
+       "[object 'torus'].scale: together with world_from_object: give one of them"},
+      {"model = \"torus.glb\"", "model = \"torus.glb\"\ncasts = 1",
+       "[object 'torus'].casts: 1 is not true or false"},
+      {"position_m = [1, 2, 3]", "position_m = [1, 2]",
+       "scene.toml:14: [light 'lamp'].position_m: [ 1, 2 ] is not a list of 3 numbers"},
+      {"position_m = [1, 2, 3]", "share = 0.5",
+       "[light 'lamp'].position_m: give one of position_m, direction_towards, node"},
+      {"position_m = [1, 2, 3]", "direction_towards = [0, 0, 0]",
+       "[light 'lamp'].direction_towards: has no length"},
+      {"position_m = [1, 2, 3]", "position_m = [1, 2, 3]\nshare = 1.5",
+       "scene.toml:15: [light 'lamp'].share: 1.5 is not within 0 to 1"},
+      {"position_m = [1, 2, 3]", "node = \"sun\"\nmodel = \"room.glb\"",
+       "[light 'lamp'].node: no node 'sun' in "},
+      {"position_m = [1, 2, 3]", "position_m = [1, 2, 3]\nradius_deg = 1",
+       "[light 'lamp'].radius_deg: a light in the room has radius_m"},
+      {"\"gnomon-scene 1\"", "\"gnomon-scene 2\"",
+       "scene.toml:1: format: 'gnomon-scene 2' is not read (accepted: \"gnomon-scene 1\")"},
+      {"format = \"gnomon-scene 1\"\n", "", "format: missing (accepted: \"gnomon-scene 1\")"},
+      {"[camera]\nfile = \"camera.yml\"\n", "", "camera: missing"},
+      {"file = \"camera.yml\"", "file = \"camera.yml\"\nnear_m = 5\nfar_m = 1",
+       "scene.toml:5: [camera].far_m: far_m 1 is not beyond near_m 5"},
+      {"name = \"box\"", "name = \"world\"", "[body 'world'].name: 'world' is not a body"},
+      {"[[light]]", "[light]", "light: a table is not a list of tables: write [[light]]"},
+      {"id = 3", "id = ", "scene.toml:6: "},
+      {"id = 3", "id = 3\nid = 4", "scene.toml:7: "}};
+  for (const Wrong& wrong : cases) {
+    const std::string message = folder.message(replaced(kSmall, wrong.from, wrong.to));
+    EXPECT_THAT(message, HasSubstr(wrong.message)) << wrong.to;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST(SceneFile, NamesThatAreUsedTwiceAreRefused) {
+  const SceneFolder folder;
+  EXPECT_THAT(folder.message(kSmall + "[[object]]\nname = \"torus\"\nrole = \"phantom\"\n"
+                                      "model = \"torus.glb\"\n"),
+              HasSubstr("scene.toml:19: [object 'torus'].name: 'torus' is used twice"));
+  EXPECT_THAT(folder.message(kSmall + "[[light]]\nname = \"lamp\"\nposition_m = [0, 0, 0]\n"),
+              HasSubstr("[light 'lamp'].name: 'lamp' is used twice"));
+}
+
+TEST(SceneFile, WithoutTagsTheCameraMustBeGiven) {
+  const SceneFolder folder;
+  std::string bare = replaced(kSmall, "[[tag]]\nfamily = \"tag36h11\"\nid = 3\nsize_m = 0.1\n", "");
+  bare = bare.substr(0, bare.find("[[body]]"));
+  EXPECT_THAT(folder.message(bare), HasSubstr("without tags the camera needs"));
+  EXPECT_NO_THROW(folder.read(
+      replaced(bare, "[[object]]",
+               "world_from_camera = [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]\n[[object]]")));
+}
+
+TEST(SceneFile, MissingAndOverlongFilesAreRefused) {
+  const SceneFolder folder;
+  EXPECT_THROW(read_scene(folder.path() / "no.toml"), InputError);
+  EXPECT_THROW(read_scene(folder.path()), InputError);
+  EXPECT_THAT(folder.message(std::string(2 << 20, '#')), HasSubstr("more than the"));
+  EXPECT_THAT(folder.message("a = " + std::string(50000, '[')), HasSubstr("scene.toml:1: "));
+}
+
+// Oracle: no crash; run under ASan and UBSan too.
+TEST(SceneFile, EveryTruncationAndFlippedByteIsReadOrRefused) {
+  const SceneFolder folder;
+  for (std::size_t at = 0; at < kSmall.size(); ++at) {
+    std::string bad = kSmall;
+    bad[at] = static_cast<char>(bad[at] ^ 0x15);
+    for (const std::string& text : {kSmall.substr(0, at), bad})
+      EXPECT_EQ(folder.message(text).find('\n'), std::string::npos);
+  }
+}
+
+// Oracle: every scene that the repository brings is accepted, and its models load.
+TEST(SceneFile, TheExamplesOfTheRepositoryAreRead) {
+  int count = 0;
+  for (const char* folder : {"examples", "tests/data/desk"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (entry.path().extension() != ".toml") continue;
+      const SceneFile scene = read_scene(entry.path());
+      EXPECT_EQ(load_models(scene).size(), scene.objects.size()) << entry.path();
+      ++count;
+    }
+  EXPECT_GE(count, 13);
+}
+
+// Oracle: one file, one model.
+TEST(SceneFile, ObjectsThatNameOneFileShareItsModel) {
+  const SceneFolder folder;
+  const SceneFile scene = folder.read(kSmall +
+                                      "[[object]]\nname = \"second\"\nrole = \"phantom\"\n"
+                                      "model = \"./torus.glb\"\n");
+  const auto models = load_models(scene);
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_EQ(models[0], models[1]);
+}
+
+}  // namespace
+}  // namespace gnomon::ar
