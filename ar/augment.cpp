@@ -25,13 +25,16 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-Image channel_at_photo(const PinholeView& view, const std::vector<std::uint8_t>& rgba_rows,
-                       std::size_t channel) {
-  std::vector<std::uint8_t> plane;
-  plane.reserve(rgba_rows.size() / 4);
-  for (std::size_t i = channel; i < rgba_rows.size(); i += 4) plane.push_back(rgba_rows[i]);
-  return {view.photo_width(), view.photo_height(), 1,
-          at_photo_pixels<std::uint8_t>(view, plane, 0)};
+/// A mask of the view in the photograph: a pixel belongs to it where at least half of its area
+/// does.
+Image mask_at_photo(const PinholeView& view, const std::vector<std::uint8_t>& rgba_rows,
+                    std::size_t channel) {
+  Image out{view.photo_width(), view.photo_height(), 1, {}};
+  out.pixels.reserve(static_cast<std::size_t>(out.width) * out.height);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x)
+      out.pixels.push_back(covered_share(view, rgba_rows, channel, x, y) >= 0.5 ? 255 : 0);
+  return out;
 }
 
 Image color_at_photo(const PinholeView& view, const raster::ColorBuffer& color) {
@@ -140,9 +143,9 @@ Augmented Augmenter::augment(const Image& photograph, const pipeline::Scene& sce
   out.composite = composite(at.view, photograph, resampled, *at.color);
   if (at.masks) {
     const std::vector<std::uint8_t> rows = at.masks->to_rgba8_rows();
-    out.shadow_mask = channel_at_photo(at.view, rows, 0);
-    out.shadow_on_virtual = channel_at_photo(at.view, rows, 1);
-    out.object_mask = channel_at_photo(at.view, rows, 2);
+    out.shadow_mask = mask_at_photo(at.view, rows, 0);
+    out.shadow_on_virtual = mask_at_photo(at.view, rows, 1);
+    out.object_mask = mask_at_photo(at.view, rows, 2);
   }
   out.composite_ms = watch.lap_ms();
   return out;

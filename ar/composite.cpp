@@ -48,6 +48,29 @@ Footprint gather(const PinholeView& view, glm::vec2 center, const Image& resampl
 
 }  // namespace
 
+double covered_share(const PinholeView& view, const std::vector<std::uint8_t>& rgba_rows,
+                     std::size_t channel, int x, int y) {
+  const glm::vec2 center = view.view_from_photo(x, y);
+  if (std::isnan(center.x)) return 0.0;
+  // Pixel u of the view spans [u - 1/2, u + 1/2].
+  const double half = 0.5 * view.samples();
+  const glm::dvec2 low = glm::dvec2(center) - half, high = glm::dvec2(center) + half;
+  const auto weight = [](int i, double from, double to) {
+    return std::max(0.0, std::min(i + 0.5, to) - std::max(i - 0.5, from));
+  };
+  double covered = 0.0, total = 0.0;
+  for (int v = std::max(0, static_cast<int>(std::floor(low.y + 0.5)));
+       v < view.height() && v - 0.5 < high.y; ++v)
+    for (int u = std::max(0, static_cast<int>(std::floor(low.x + 0.5)));
+         u < view.width() && u - 0.5 < high.x; ++u) {
+      const double area = weight(u, low.x, high.x) * weight(v, low.y, high.y);
+      const std::size_t i = static_cast<std::size_t>(view.height() - 1 - v) * view.width() + u;
+      total += area;
+      if (rgba_rows[4 * i + channel] != 0) covered += area;
+    }
+  return total > 0.0 ? covered / total : 0.0;
+}
+
 Image composite(const PinholeView& view, const Image& photograph, const Image& resampled,
                 const raster::ColorBuffer& drawn) {
   raster::require(drawn.width() == view.width() && drawn.height() == view.height() &&

@@ -19,6 +19,12 @@ namespace gnomon::ar {
 Image composite(const PinholeView& view, const Image& photograph, const Image& resampled,
                 const raster::ColorBuffer& drawn);
 
+/// The share of a photograph's pixel, as a square of the view, where a channel of the view's rows
+/// (r, g, b, a from the bottom row) is 255 and not 0; view pixels that the square cuts count by the
+/// part inside. 0 where the lens images nothing.
+double covered_share(const PinholeView& view, const std::vector<std::uint8_t>& rgba_rows,
+                     std::size_t channel, int x, int y);
+
 /// A plane of the view (rows from the bottom, as buffers give them) at the photograph's pixel
 /// centres, rows from the top; `outside` where the lens images nothing.
 template <class T>
