@@ -16,7 +16,7 @@ using raster::StencilOp;
 /// Seven bits count volumes where the eighth remembers that a pixel is in a real shadow.
 constexpr std::uint8_t kSevenBits = 0x7f;
 
-/// Stencil marks of visible virtual objects while masks are drawn.
+/// Stencil marks of visible virtual objects, by whether they receive shadows.
 constexpr int kMarkVirtual = 1, kMarkReceiver = 2;
 
 /// The volumes of one light, apart by the role of their caster.
@@ -162,12 +162,12 @@ class Recorder {
     frame_.draw(std::move(draw));
     if (options_.masks) {
       begin_mask(haller_label::kMaskShadowOnReal, &light);
-      draw_mask(glm::vec4(1.0f), {true, false, false, false}, where_counted(), 0, "shadow plane",
+      draw_mark(glm::vec4(1.0f), {true, false, false, false}, where_counted(), 0, "shadow plane",
                 where_a_surface_is());
     }
   }
 
-  void draw_mask(const glm::vec4& color, std::array<bool, 4> write,
+  void draw_mark(const glm::vec4& color, std::array<bool, 4> write,
                  const raster::StencilState& stencil, int ref, std::string label,
                  std::optional<raster::DepthState> depth = {},
                  std::optional<raster::Blend> blend = {}) {
@@ -180,26 +180,28 @@ class Recorder {
     frame_.draw(std::move(draw));
   }
 
-  /// Draws the virtual objects in front of the phantoms, whose depth still stands from step 2.
+  /// Draws the virtual objects in front of the phantoms, whose depth still stands from step 2, and
+  /// leaves alpha 1 where one is visible: exactly there, whatever alpha a texture has.
   void draw_virtual_lit(const LightTerms& terms) {
     begin(haller_label::kVirtualLit);
+    frame_.clear({.stencil = 0});
     raster::State state = surface_state();
     state.depth = raster::DepthState{};
-    if (options_.masks) {
-      frame_.clear({.stencil = 0});
-      state.stencil = raster::StencilState::both({.pass = StencilOp::replace});
-    }
+    state.color.write = {true, true, true, false};
+    state.stencil = raster::StencilState::both({.pass = StencilOp::replace});
     for (const PlacedObject& object : objects_) {
       if (!object.is(Role::virtual_object)) continue;
       const int mark = object.object->receives ? kMarkReceiver : kMarkVirtual;
       draw_lit(frame_, object, scene_, camera_, terms, state, mark);
     }
+    draw_mark(glm::vec4(1.0f), {false, false, false, true}, where_counted(), 0,
+              "alpha of visible virtual objects");
     if (!options_.masks) return;
     begin_mask(haller_label::kMaskVirtual);
     // r goes back to 0: no real surface is visible here any more.
-    draw_mask({0.0f, 0.0f, 1.0f, 0.0f}, {true, true, true, true}, where_counted(), 0,
+    draw_mark({0.0f, 0.0f, 1.0f, 0.0f}, {true, true, true, true}, where_counted(), 0,
               "visible virtual objects");
-    draw_mask(glm::vec4(1.0f), {false, false, false, true},
+    draw_mark(glm::vec4(1.0f), {false, false, false, true},
               raster::StencilState::both({.func = CompareFunc::equal}), kMarkReceiver,
               "visible virtual objects that receive");
   }
@@ -220,6 +222,11 @@ class Recorder {
     raster::State state = surface_state();
     state.depth = raster::DepthState{.func = CompareFunc::equal, .write = false};
     state.stencil = where_counted();
+    // Where a phantom in front has the very depth of a virtual object, alpha 0 keeps the
+    // photograph.
+    state.color = {.write = {true, true, true, false},
+                   .blend = raster::Blend{.src_color = raster::BlendFactor::dst_alpha,
+                                          .dst_color = raster::BlendFactor::one_minus_dst_alpha}};
     for (const PlacedObject& object : objects_) {
       if (!object.is(Role::virtual_object) || !object.object->receives) continue;
       draw_lit(frame_, object, scene_, camera_, {.ambient = true, .emission = true}, state);
@@ -233,7 +240,7 @@ class Recorder {
       begin(haller_label::kShadowOnVirtual, &lights_[i]);
       for (const PlacedObject& object : objects_) {
         if (object.is(Role::virtual_object)) {
-          add_light(frame_, object, scene_, camera_, lights_[i]);
+          add_light(frame_, object, scene_, camera_, lights_[i], raster::BlendFactor::dst_alpha);
         }
       }
     }
@@ -249,7 +256,7 @@ class Recorder {
       frame_.clear({.stencil = 0});
       count(volumes_[i].real, lights_[i]);
       begin_mask(haller_label::kMaskShadowOnVirtual, &lights_[i]);
-      draw_mask(glm::vec4(1.0f), {false, true, false, false}, where_counted(), 0, "shadow plane",
+      draw_mark(glm::vec4(1.0f), {false, true, false, false}, where_counted(), 0, "shadow plane",
                 {}, blend);
     }
   }

@@ -53,8 +53,7 @@ inline constexpr const char* kMaskShadowOnVirtual = "mask: shadow of real on vir
 /// Preconditions: all three targets, of the photograph's size; `scene`, the photograph's pixels and
 /// the buffers outlive the execution of the frame.
 /// After execution: colour r, g, b is the augmented photograph, alpha 1 where a virtual object is
-/// visible (times its texture's and vertices' own alpha) and 0 elsewhere; depth is that of phantoms
-/// and virtual objects together.
+/// visible and 0 elsewhere; depth is that of phantoms and virtual objects together.
 raster::Frame record_haller(const Scene& scene, const Camera& camera,
                             const raster::ImageView& photograph, const raster::Targets& targets,
                             const HallerOptions& options = {});

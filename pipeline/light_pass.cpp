@@ -3,7 +3,7 @@
 namespace gnomon::pipeline {
 
 void add_light(raster::Frame& frame, const PlacedObject& object, const Scene& scene,
-               const Camera& camera, const Light& light) {
+               const Camera& camera, const Light& light, raster::BlendFactor factor) {
   raster::State state = surface_state();
   state.depth = raster::DepthState{.func = raster::CompareFunc::equal, .write = false};
   if (object.object->receives) {
@@ -11,8 +11,7 @@ void add_light(raster::Frame& frame, const PlacedObject& object, const Scene& sc
         {.func = raster::CompareFunc::equal, .pass = raster::StencilOp::incr});
   }
   state.color.write = {true, true, true, false};
-  state.color.blend =
-      raster::Blend{.src_color = raster::BlendFactor::one, .dst_color = raster::BlendFactor::one};
+  state.color.blend = raster::Blend{.src_color = factor, .dst_color = raster::BlendFactor::one};
   draw_lit(frame, object, scene, camera,
            {.diffuse = true, .specular = true, .lights = std::span(&light, 1)}, state);
 }

@@ -51,7 +51,8 @@ struct LightTerms {
 void draw_depth(raster::Frame& frame, const PlacedObject& object, const raster::State& state,
                 int stencil_ref = 0);
 
-/// Records the object's parts with lighting; alpha is 1. The frame keeps the model alive.
+/// Records the object's parts with lighting; the material's alpha counts as 1. The frame keeps the
+/// meshes.
 void draw_lit(raster::Frame& frame, const PlacedObject& object, const Scene& scene,
               const Camera& camera, const LightTerms& terms, const raster::State& state,
               int stencil_ref = 0);

@@ -102,6 +102,16 @@ Counted count_scene(const Scene& scene, const Camera& camera, const VolumeOption
   return counted;
 }
 
+Reason why(const RayReference& rays, const Camera& camera, const glm::vec4& light, int x, int y,
+           bool drawn, bool counted_shadow) {
+  const RayHit hit = rays.trace(window_ray(camera, x + 0.5, y + 0.5));
+  if (edge_within_a_pixel(rays, camera, light, x, y, drawn, hit.hit, counted_shadow)) {
+    return Reason::edge;
+  }
+  if (hit.hit && is_depth_tie(rays, camera, hit, light, counted_shadow)) return Reason::depth_tie;
+  return Reason::none;
+}
+
 Disagreement compare_with_rays(const Counted& counted, const RayReference& rays,
                                const Camera& camera, const glm::vec4& light) {
   Disagreement result;
@@ -114,13 +124,10 @@ Disagreement compare_with_rays(const Counted& counted, const RayReference& rays,
       const bool counted_shadow = counted.stencil.at(x, y) != 0;
       if (hit.hit && rays.shadow(hit, light).in_shadow == counted_shadow) continue;
       ++result.wrong;
-      if (edge_within_a_pixel(rays, camera, light, x, y, drawn, hit.hit, counted_shadow)) {
-        ++result.at_edge;
-      } else if (hit.hit && is_depth_tie(rays, camera, hit, light, counted_shadow)) {
-        ++result.depth_tie;
-      } else {
-        ++result.unexplained;
-      }
+      const Reason reason = why(rays, camera, light, x, y, drawn, counted_shadow);
+      result.at_edge += reason == Reason::edge;
+      result.depth_tie += reason == Reason::depth_tie;
+      result.unexplained += reason == Reason::none;
     }
   }
   return result;

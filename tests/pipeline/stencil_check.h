@@ -21,6 +21,13 @@ struct Counted {
 Counted count_scene(const pipeline::Scene& scene, const pipeline::Camera& camera,
                     const pipeline::VolumeOptions& options, bool appendix_letter = false);
 
+enum class Reason { edge, depth_tie, none };
+
+/// Why the rays may see light where `counted_shadow` says shadow at a pixel, or the other way.
+/// `drawn`: the buffers show a surface there.
+Reason why(const pipeline::RayReference& rays, const pipeline::Camera& camera,
+           const glm::vec4& light, int x, int y, bool drawn, bool counted_shadow);
+
 struct Disagreement {
   std::size_t tested = 0, wrong = 0;
   /// Wrong pixels with a place within one pixel where the rays say what the stencil says: a
