@@ -252,9 +252,14 @@ class Recorder {
                               .src_color = raster::BlendFactor::dst_alpha,
                               .dst_color = raster::BlendFactor::one};
     for (std::size_t i = 0; i < lights_.size(); ++i) {
-      begin_mask(haller_label::kMaskRealVolumes, &lights_[i]);
+      // What a virtual object shades already, itself included, the real object takes no light from.
+      begin_mask(haller_label::kMaskVirtualVolumes, &lights_[i]);
       frame_.clear({.stencil = 0});
-      count(volumes_[i].real, lights_[i]);
+      count(volumes_[i].virtual_, lights_[i]);
+      flag_counts(frame_);
+      begin_mask(haller_label::kMaskRealVolumes, &lights_[i]);
+      count(volumes_[i].real, lights_[i], kSevenBits);
+      drop_flagged(frame_);
       begin_mask(haller_label::kMaskShadowOnVirtual, &lights_[i]);
       draw_mark(glm::vec4(1.0f), {false, true, false, false}, where_counted(), 0, "shadow plane",
                 {}, blend);

@@ -21,8 +21,9 @@ struct HallerOptions {
   /// Appendix A's culled single-sided draws with saturating operations.
   bool appendix_letter = false;
   /// RGBA8 of the targets' size, or null. Receives 255 or 0: r where a virtual shadow darkens a
-  /// visible real surface, g where a real object's volume reaches a visible virtual object, b where
-  /// a virtual object is visible (a: those of b that receive shadows). The picture stays the same.
+  /// visible real surface, g where a real object's shadow takes the light from a visible virtual
+  /// object that no virtual object shades already, b where a virtual object is visible (a: those of
+  /// b that receive shadows). The picture stays the same.
   raster::ColorBuffer* masks = nullptr;
   /// Topologies kept between frames; null builds them anew.
   TopologyCache* topologies = nullptr;
@@ -44,6 +45,7 @@ inline constexpr const char* kShadowOnVirtual = "step 3: shadow on virtual objec
 inline constexpr const char* kMaskClear = "mask: cleared";
 inline constexpr const char* kMaskShadowOnReal = "mask: virtual shadow on real objects";
 inline constexpr const char* kMaskVirtual = "mask: virtual objects";
+inline constexpr const char* kMaskVirtualVolumes = "mask: volumes of virtual objects";
 inline constexpr const char* kMaskRealVolumes = "mask: volumes of real objects";
 inline constexpr const char* kMaskShadowOnVirtual = "mask: shadow of real on virtual objects";
 }  // namespace haller_label
