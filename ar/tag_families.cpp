@@ -10,6 +10,9 @@
 #include <apriltag/tagStandard41h12.h>
 #include <apriltag/tagStandard52h13.h>
 
+#include <algorithm>
+#include <bitset>
+
 #include <fmt/format.h>
 
 #include "ar/yaml_input.h"
@@ -80,6 +83,36 @@ cv::Mat marker_bits(const std::filesystem::path& file, const YAML::Node& node,
   return bits;
 }
 
+using Bits = std::bitset<100>;
+
+/// The code as it reads when the marker is turned by a quarter.
+Bits quarter_turn(const Bits& bits, int size) {
+  Bits turned;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      turned[static_cast<std::size_t>(x * size + size - 1 - y)] =
+          bits[static_cast<std::size_t>(y * size + x)];
+    }
+  }
+  return turned;
+}
+
+/// Bits that can be corrected with certainty: less than half the smallest distance between two
+/// codes in any of the four turns.
+int correctable_bits(const std::vector<Bits>& codes, int size) {
+  std::size_t smallest = static_cast<std::size_t>(size) * size;
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    Bits turned = codes[i];
+    for (int turn = 0; turn < 4; ++turn, turned = quarter_turn(turned, size)) {
+      if (turn > 0) smallest = std::min(smallest, (turned ^ codes[i]).count());
+      for (std::size_t j = i + 1; j < codes.size(); ++j) {
+        smallest = std::min(smallest, (turned ^ codes[j]).count());
+      }
+    }
+  }
+  return smallest == 0 ? 0 : static_cast<int>((smallest - 1) / 2);
+}
+
 }  // namespace
 
 std::vector<std::string> april_family_names() {
@@ -112,16 +145,22 @@ cv::Ptr<cv::aruco::Dictionary> read_dictionary(const std::filesystem::path& file
   const YAML::Node root = yaml::load(file);
   const int markers = yaml::integer(file, root["nmarkers"], "nmarkers", 1, 4096);
   const int size = yaml::integer(file, root["markersize"], "markersize", 3, 10);
+  cv::Mat bytes;
+  std::vector<Bits> codes;
+  for (int i = 0; i < markers; ++i) {
+    const std::string key = fmt::format("marker_{}", i);
+    const cv::Mat bits = marker_bits(file, root[key], key, size);
+    bytes.push_back(cv::aruco::Dictionary::getByteListFromBits(bits));
+    Bits code;
+    for (int b = 0; b < size * size; ++b) {
+      code[static_cast<std::size_t>(b)] = bits.at<std::uint8_t>(b / size, b % size) != 0;
+    }
+    codes.push_back(code);
+  }
   const YAML::Node correction = root["maxCorrectionBits"];
   const int corrected = correction.IsDefined()
                             ? yaml::integer(file, correction, "maxCorrectionBits", 0, size * size)
-                            : 0;
-  cv::Mat bytes;
-  for (int i = 0; i < markers; ++i) {
-    const std::string key = fmt::format("marker_{}", i);
-    bytes.push_back(
-        cv::aruco::Dictionary::getByteListFromBits(marker_bits(file, root[key], key, size)));
-  }
+                            : correctable_bits(codes, size);
   return cv::makePtr<cv::aruco::Dictionary>(bytes, size, corrected);
 }
 

@@ -24,8 +24,8 @@ AprilFamilyPtr make_april_family(const std::string& name);
 /// Null for a name that OpenCV does not have.
 cv::Ptr<cv::aruco::Dictionary> predefined_dictionary(const std::string& name);
 
-/// Reads nmarkers, markersize, maxCorrectionBits (0 if absent) and marker_0 ... as OpenCV writes
-/// them.
+/// Reads nmarkers, markersize, maxCorrectionBits and marker_0 ... as OpenCV writes them. Without
+/// maxCorrectionBits as many are corrected as the codes' smallest distance allows.
 /// Errors: InputError for a count over 4096, a size not in [3, 10], a marker that is missing or not
 /// of size x size digits 0 and 1.
 cv::Ptr<cv::aruco::Dictionary> read_dictionary(const std::filesystem::path& file);

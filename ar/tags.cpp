@@ -21,6 +21,14 @@ namespace {
 constexpr int kSmallestPicture_px = 16;
 /// With two corrected bits a family of 65535 codes wants 7 GB of tables.
 constexpr std::uint32_t kManyCodes = 5000;
+/// Families with a smaller distance between codes read noise as tags when bits are corrected.
+constexpr std::uint32_t kSafeDistance = 9;
+constexpr int kSafeArucoBits = 3;
+/// Of OpenCV's: wrong bits in the black border, as a share of a marker's bits. Its 0.35 lets
+/// through squares that are hardly a border; no marker of the measured photographs needs more than
+/// this.
+constexpr double kArucoBorderErrors = 0.1;
+constexpr double kArucoCorrectionRate = 0.6;
 
 struct DetectorDeleter {
   void operator()(apriltag_detector_t* d) const { apriltag_detector_destroy(d); }
@@ -58,9 +66,12 @@ void TagDetector::Impl::add_april(AprilFamilyPtr family) {
     april->nthreads = 1;
     april->quad_decimate = static_cast<float>(options.decimate);
     april->quad_sigma = 0.0f;
-    april->refine_edges = true;
+    // Our own lines take its place; moving corners before decoding loses tags.
+    april->refine_edges = !options.refine || options.decimate > 1.0;
   }
-  const int bits = std::min(options.max_hamming, family->ncodes > kManyCodes ? 1 : 2);
+  const int safe = family->h >= kSafeDistance ? 2 : 0;
+  const int bits =
+      std::min(options.max_hamming.value_or(safe), family->ncodes > kManyCodes ? 1 : 2);
   apriltag_detector_add_family_bits(april.get(), family.get(), bits);
   families.push_back(std::move(family));
 }
@@ -74,7 +85,7 @@ void TagDetector::Impl::detect_april(const Image& picture, std::vector<Detection
   for (int i = 0; i < zarray_size(all.get()); ++i) {
     apriltag_detection_t* d = nullptr;
     zarray_get(all.get(), i, &d);
-    if (d->hamming > options.max_hamming || d->decision_margin < options.min_margin) continue;
+    if (d->decision_margin < options.min_margin) continue;
     Detection detection{{d->family->name, d->id}, {}, d->hamming, d->decision_margin};
     // AprilTag counts from the bottom left, counter-clockwise as printed.
     for (std::size_t c = 0; c < 4; ++c) {
@@ -92,6 +103,13 @@ void TagDetector::Impl::detect_aruco(const Image& picture, const Dictionary& dic
                      const_cast<std::uint8_t*>(picture.pixels.data()));
   const auto parameters = cv::aruco::DetectorParameters::create();
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_CONTOUR;
+  parameters->maxErroneousBitsInBorderRate = kArucoBorderErrors;
+  const int correctable = dictionary.codes->maxCorrectionBits;
+  const double safe = correctable >= kSafeArucoBits ? kArucoCorrectionRate : 0.0;
+  // OpenCV truncates rate x correctable to whole bits.
+  parameters->errorCorrectionRate = options.max_hamming && correctable > 0
+                                        ? std::min(1.0, (*options.max_hamming + 0.01) / correctable)
+                                        : safe;
   std::vector<std::vector<cv::Point2f>> corners;
   std::vector<int> numbers;
   cv::aruco::detectMarkers(view, dictionary.codes, corners, numbers, parameters);
@@ -122,7 +140,7 @@ TagDetector::TagDetector(const std::vector<std::string>& families,
     : impl_(std::make_unique<Impl>()) {
   raster::require(options.decimate >= 1.0 && options.decimate <= 16.0,
                   "tags are looked for in a picture 1 to 16 times smaller");
-  raster::require(options.max_hamming >= 0 && options.max_hamming <= 2,
+  raster::require(!options.max_hamming || (*options.max_hamming >= 0 && *options.max_hamming <= 2),
                   "a tag detector corrects 0 to 2 bits");
   impl_->options = std::move(options);
   for (const std::string& name : std::set<std::string>(families.begin(), families.end())) {

@@ -48,10 +48,12 @@ struct TagDetectorOptions {
   bool refine = true;
   /// Turns values into light for the refinement.
   Response response = Response::from_gamma(2.2);
-  /// AprilTag: more corrected bits, or a smaller margin, is taken for a false detection. Figures
-  /// behind the defaults: docs/tracking.md.
-  int max_hamming = 1;
-  double min_margin = 20.0;
+  /// Corrected bits that are accepted, 0 to 2. Absent: 2 for families whose codes differ in 9 bits
+  /// or more, else 0 (ArUco: OpenCV's own rate where a dictionary can correct 3 bits, else 0),
+  /// which gave no false AprilTag on real photographs (docs/tracking.md).
+  std::optional<int> max_hamming = {};
+  /// AprilTag's smallest decision margin.
+  double min_margin = 0.0;
 };
 
 /// Names that TagDetector knows without a file.
