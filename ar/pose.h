@@ -60,7 +60,8 @@ std::vector<PoseFit> tag_poses(const Lens& lens, const TagCorners& corners_px, d
 /// corrected.
 class PoseChooser {
  public:
-  explicit PoseChooser(double threshold = 20.0) : threshold_(threshold) {}
+  PoseChooser() = default;
+  explicit PoseChooser(double threshold) : threshold_(threshold) {}
 
   /// Index of the pose to take from fits of one frame (least chi2 first, not empty).
   std::size_t choose(std::span<const PoseFit> fits, const std::optional<glm::dmat4>& prior);
@@ -68,7 +69,7 @@ class PoseChooser {
   void reset() { evidence_ = 0.0; }
 
  private:
-  double threshold_;
+  double threshold_ = 20.0;
   double evidence_ = 0.0;
 };
 

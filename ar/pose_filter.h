@@ -13,10 +13,10 @@ namespace gnomon::ar {
 
 struct OneEuroOptions {
   /// Cut-off at rest: lower is calmer.
-  double min_cutoff_hz = 1.5;
+  double min_cutoff_hz = 1.0;
   /// Rise of the cut-off with speed: higher lags less.
-  double beta_per_m = 60.0;
-  double beta_per_rad = 20.0;
+  double beta_per_m = 200.0;
+  double beta_per_rad = 40.0;
   /// Cut-off of the speed itself.
   double speed_cutoff_hz = 1.0;
   bool operator==(const OneEuroOptions&) const = default;

@@ -63,13 +63,12 @@ struct Tracker::Impl {
   }
 
   void reset() {
-    const auto fresh = [&] {
-      Memory memory;
-      if (options.filter) memory.filter.emplace(*options.filter);
-      return memory;
-    };
-    world = fresh();
-    for (Memory& body : bodies) body = fresh();
+    world = Memory{};
+    if (options.filter) world.filter.emplace(options.filter->camera);
+    for (Memory& body : bodies) {
+      body = Memory{};
+      if (options.filter) body.filter.emplace(options.filter->body);
+    }
   }
 
   const Lens& lens_for(const Image& picture);

@@ -22,12 +22,19 @@
 
 namespace gnomon::ar {
 
+/// A camera held by many tags is calm and moves fast; a body with one small tag is neither. Figures
+/// behind the defaults: docs/tracking.md.
+struct FilterOptions {
+  OneEuroOptions camera{.min_cutoff_hz = 1.0, .beta_per_m = 500.0, .beta_per_rad = 400.0};
+  OneEuroOptions body{.min_cutoff_hz = 1.0, .beta_per_m = 200.0, .beta_per_rad = 40.0};
+};
+
 struct TrackerOptions {
   TagDetectorOptions detector;
   std::vector<CustomDictionary> dictionaries;
   PoseOptions pose;
   /// Absent: poses as measured.
-  std::optional<OneEuroOptions> filter = OneEuroOptions{};
+  std::optional<FilterOptions> filter = FilterOptions{};
   /// A pose whose tags are not seen stays for so long.
   double hold_s = 0.25;
 };

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -177,8 +178,111 @@ void print_row(const std::string& set, const std::string& mode, std::size_t pict
              e.camera_mm.text(), e.camera_deg.text(), e.body_mm.text(), e.body_deg.text());
 }
 
-void measure_set(const fs::path& dir) {
-  const Capture capture = read_capture(fs::canonical(dir));
+/// Frame-to-frame change of the error: what a viewer sees tremble.
+struct Jitter {
+  Statistics mm, deg;
+  std::optional<glm::dmat4> last;
+
+  void add(const glm::dmat4& measured, const glm::dmat4& truth) {
+    const glm::dmat4 error = rigid_inverse(truth) * measured;
+    if (last) {
+      mm.add(apart_mm(error, *last));
+      deg.add(kDegrees * rotation_between_rad(error, *last));
+    }
+    last = error;
+  }
+};
+
+/// A still camera and still bodies whose corners tremble: the true ones plus Gaussian noise.
+void measure_still(const Capture& capture, const std::string& name, const TrackerOptions& options) {
+  constexpr int kFrames = 240;
+  constexpr double kNoise_px = 0.1;
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0.0, kNoise_px);
+  const Lens lens(capture.camera);
+  const glm::dmat4 world_from_camera = capture.background[0].world_from_camera;
+  const glm::dmat4 camera_from_world = rigid_inverse(world_from_camera);
+  Tracker tracker(capture.camera, capture.layout, options);
+  Jitter camera, body;
+  Statistics camera_mm, camera_deg, body_mm, body_deg;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    std::vector<Detection> detections;
+    const auto add = [&](const PlacedTag& tag, const glm::dmat4& world_from_tag) {
+      Detection d{tag.id, {}};
+      const auto corners = tag_corners_m(tag.size_m);
+      for (std::size_t c = 0; c < 4; ++c) {
+        const auto pixel = lens.project(
+            glm::dvec3(camera_from_world * world_from_tag * glm::dvec4(corners[c], 1.0)));
+        if (!pixel) return;
+        d.corners_px[c] = *pixel + glm::dvec2(noise(random), noise(random));
+      }
+      detections.push_back(d);
+    };
+    for (const PlacedTag& tag : capture.layout.world.tags) add(tag, tag.body_from_tag);
+    for (const TaggedBody& b : capture.layout.bodies) {
+      if (b.name != kHandle) add(b.tags[0], capture.world_from_body.at(b.name));
+    }
+    const TrackResult result = tracker.update(detections, frame / capture.video_fps);
+    camera.add(result.world_from_camera.value(), world_from_camera);
+    camera_mm.add(apart_mm(*result.world_from_camera, world_from_camera));
+    camera_deg.add(kDegrees * rotation_between_rad(*result.world_from_camera, world_from_camera));
+    for (const BodyTrack& b : result.bodies) {
+      if (b.name == kHandle || b.name != capture.layout.bodies[0].name) continue;
+      body.add(b.world_from_body.value(), capture.world_from_body.at(b.name));
+      body_mm.add(apart_mm(*b.world_from_body, capture.world_from_body.at(b.name)));
+      body_deg.add(kDegrees *
+                   rotation_between_rad(*b.world_from_body, capture.world_from_body.at(b.name)));
+    }
+  }
+  fmt::print("| {} | {:.3f} | {:.4f} | {:.3f} | {:.4f} | {:.2f} | {:.3f} | {:.2f} | {:.3f} |\n",
+             name, camera.mm.rms(), camera.deg.rms(), camera_mm.rms(), camera_deg.rms(),
+             body.mm.rms(), body.deg.rms(), body_mm.rms(), body_deg.rms());
+}
+
+/// Tracker with and without filter along the video: error (lag included) and jitter.
+void measure_filter(const Capture& capture, const std::string& name,
+                    const TrackerOptions& options) {
+  Tracker tracker(capture.camera, capture.layout, options);
+  Jitter camera, handle;
+  Statistics camera_mm, camera_deg, handle_mm, handle_deg;
+  double time_s = 0.0;
+  for (const Picture& picture : capture.video) {
+    const TrackResult result = tracker.update(picture.image, time_s);
+    time_s += 1.0 / capture.video_fps;
+    if (result.world_from_camera) {
+      camera.add(*result.world_from_camera, picture.world_from_camera);
+      camera_mm.add(apart_mm(*result.world_from_camera, picture.world_from_camera));
+      camera_deg.add(kDegrees *
+                     rotation_between_rad(*result.world_from_camera, picture.world_from_camera));
+    }
+    for (const BodyTrack& body : result.bodies) {
+      if (body.name != kHandle || !body.world_from_body) continue;
+      handle.add(*body.world_from_body, *picture.world_from_handle);
+      handle_mm.add(apart_mm(*body.world_from_body, *picture.world_from_handle));
+      handle_deg.add(kDegrees *
+                     rotation_between_rad(*body.world_from_body, *picture.world_from_handle));
+    }
+  }
+  fmt::print("| {} | {:.3f} | {:.4f} | {:.3f} | {:.4f} | {:.2f} | {:.3f} | {:.2f} | {:.3f} |\n",
+             name, camera.mm.rms(), camera.deg.rms(), camera_mm.rms(), camera_deg.rms(),
+             handle.mm.rms(), handle.deg.rms(), handle_mm.rms(), handle_deg.rms());
+}
+
+/// Filter off and on, root mean squares: trembling against lag.
+void print_filter(const Capture& capture) {
+  fmt::print(
+      "\n| corners | filter | camera jitter mm | deg | camera error mm | deg | body jitter mm | "
+      "deg | body error mm | deg |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const bool filtered : {false, true}) {
+    TrackerOptions options;
+    if (!filtered) options.filter.reset();
+    const std::string state = filtered ? "on" : "off";
+    measure_still(capture, "still, 0.1 px noise | " + state, options);
+    if (!capture.video.empty()) measure_filter(capture, "video | " + state, options);
+  }
+}
+
+void print_poses(const Capture& capture, const std::string& set) {
   struct Mode {
     std::string name;
     TrackerOptions options;
@@ -206,20 +310,28 @@ void measure_set(const fs::path& dir) {
   for (const auto& [name, pictures] : sets) {
     if (pictures->empty()) continue;
     for (const Mode& mode : modes) {
-      print_row(fs::canonical(dir).filename().string() + " " + name, mode.name, pictures->size(),
+      print_row(set + " " + name, mode.name, pictures->size(),
                 measure(capture, *pictures, mode.options));
     }
   }
+}
+
+void measure_set(const fs::path& dir) {
+  const fs::path canonical = fs::canonical(dir);
+  const Capture capture = read_capture(canonical);
+  fmt::print(
+      "\nMedian / worst.\n\n| pictures | corners | n | tags | corner px | tag mm | tag deg | flips "
+      "| "
+      "camera mm | camera deg | body mm | body deg |\n|---|---|---|---|---|---|---|---|---|---|---|"
+      "---|\n");
+  print_poses(capture, canonical.filename().string());
+  print_filter(capture);
 }
 
 }  // namespace
 }  // namespace gnomon::ar
 
 int main(int argc, char** argv) {
-  fmt::print(
-      "Median / worst.\n\n| pictures | corners | n | tags | corner px | tag mm | tag deg | flips | "
-      "camera mm | camera deg | body mm | body deg |\n|---|---|---|---|---|---|---|---|---|---|---|"
-      "---|\n");
   try {
     for (int i = 1; i < argc; ++i) gnomon::ar::measure_set(argv[i]);
   } catch (const std::exception& e) {
