@@ -56,7 +56,7 @@ struct ShadowSettings {
 /// The one-euro filter that calms tag jitter; its numbers as in docs/scene.md.
 struct FilterSettings {
   bool on = true;
-  double min_cutoff_hz = 1.5, beta_per_m = 60.0, beta_per_rad = 20.0, speed_cutoff_hz = 1.0;
+  double min_cutoff_hz = 1.0, beta_per_m = 200.0, beta_per_rad = 40.0, speed_cutoff_hz = 1.0;
 };
 
 /// A ROS tags.yaml: its tags' family, and the bundle that is the world (empty: none).

@@ -64,10 +64,15 @@ struct Tracker::Impl {
 
   void reset() {
     world = Memory{};
-    if (options.filter) world.filter.emplace(options.filter->camera);
+    if (options.filter) {
+      OneEuroOptions camera_filter = *options.filter;
+      camera_filter.beta_per_m *= options.camera_beta_gain_per_m;
+      camera_filter.beta_per_rad *= options.camera_beta_gain_per_rad;
+      world.filter.emplace(camera_filter);
+    }
     for (Memory& body : bodies) {
       body = Memory{};
-      if (options.filter) body.filter.emplace(options.filter->body);
+      if (options.filter) body.filter.emplace(*options.filter);
     }
   }
 

@@ -22,19 +22,15 @@
 
 namespace gnomon::ar {
 
-/// A camera held by many tags is calm and moves fast; a body with one small tag is neither. Figures
-/// behind the defaults: docs/tracking.md.
-struct FilterOptions {
-  OneEuroOptions camera{.min_cutoff_hz = 1.0, .beta_per_m = 500.0, .beta_per_rad = 400.0};
-  OneEuroOptions body{.min_cutoff_hz = 1.0, .beta_per_m = 200.0, .beta_per_rad = 40.0};
-};
-
 struct TrackerOptions {
   TagDetectorOptions detector;
   std::vector<CustomDictionary> dictionaries;
   PoseOptions pose;
   /// Absent: poses as measured.
-  std::optional<FilterOptions> filter = FilterOptions{};
+  std::optional<OneEuroOptions> filter = OneEuroOptions{};
+  /// The camera's filter has these times the betas: held by several tags it is calmer than a body
+  /// with a small one, and its lag moves everything in the picture. Figures: docs/tracking.md.
+  double camera_beta_gain_per_m = 2.5, camera_beta_gain_per_rad = 10.0;
   /// A pose whose tags are not seen stays for so long.
   double hold_s = 0.25;
 };
