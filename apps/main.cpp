@@ -35,7 +35,7 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(
       "Examples:\n"
-      "  gnomon ar examples/desk/01_torus_on_house.toml --image examples/desk/background.png --out out\n"
+      "  gnomon ar scene.toml --image photograph.png --out out --steps\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
       "  gnomon COMMAND --help");
   gnomon::apps::add_ar(program);
