@@ -9,12 +9,13 @@
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 
 #include "ar/error.h"
 #include "ar/file.h"
-#include "ar/png_chunks.h"
+#include "ar/picture_bytes.h"
 #include "raster/check.h"
 
 namespace gnomon::ar {
@@ -24,11 +25,6 @@ namespace {
 using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-
-// OpenImageIO also opens movies, terminals and procedural "null" pictures; a picture file here is
-// one of these.
-constexpr std::array<std::string_view, 9> kFormats{"png", "jpeg", "tiff",    "bmp", "pnm",
-                                                   "tga", "webp", "openexr", "hdr"};
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 31;
 
@@ -43,9 +39,6 @@ std::string message_of(const ImageInput& input) {
 
 void check_spec(const ImageInput& input, std::string_view name) {
   const ImageSpec& spec = input.spec();
-  const std::string format = input.format_name();
-  if (std::find(kFormats.begin(), kFormats.end(), format) == kFormats.end())
-    fail(name, fmt::format("format {} is not read", format));
   if (spec.deep || spec.depth > 1) fail(name, "deep and volume pictures are not read");
   const std::int64_t area = std::int64_t{spec.width} * spec.height;
   if (spec.width < 1 || spec.height < 1 || spec.width > kMaxImageSide ||
@@ -133,23 +126,38 @@ Image read_8bit(ImageInput& input, std::string_view name) {
   return image;
 }
 
-/// Checks what OpenImageIO's codecs do not report.
-void check_chunks(std::span<const std::uint8_t> bytes, std::string_view name) {
-  if (!is_png(bytes)) return;
-  if (const auto fault = png_fault(bytes)) fail(name, *fault);
-}
+/// A picture that is being decoded, with the memory that it is decoded from.
+struct Source {
+  std::vector<std::uint8_t> bytes;
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> reader;
+  ImageInput::unique_ptr input;
+};
 
-ImageInput::unique_ptr open_file(const std::filesystem::path& path) {
-  check_chunks(read_file(path, kMaxFileBytes), path.string());
-  const ImageSpec options = open_options();
-  // Absolute, so that no name is taken for something else than a file.
-  ImageInput::unique_ptr input =
-      ImageInput::open(std::filesystem::absolute(path).string(), &options);
-  if (!input) {
-    const std::string message = OIIO::geterror();
-    fail(path.string(), message.empty() ? "cannot be opened as a picture" : message);
+/// Opens a file's bytes by the reader that their beginning asks for, and no other: OpenImageIO's
+/// own choice also knows movies, terminals and made-up pictures. PNG and JPEG are decoded from
+/// memory; `path` is where the other formats are read from, empty if they are not welcome.
+Source open_bytes(std::vector<std::uint8_t> bytes, std::string_view name,
+                  const std::filesystem::path& path) {
+  Source source;
+  const std::string format(picture_format(bytes));
+  const bool in_memory = format == "png" || format == "jpeg";
+  if (format.empty() || (!in_memory && path.empty()))
+    fail(name, path.empty() ? "neither a PNG nor a JPEG picture"
+                            : "not a picture (png, jpeg, bmp, pnm, exr and hdr are read)");
+  source.input = ImageInput::create(format);
+  if (!source.input) fail(name, OIIO::geterror());
+  ImageSpec spec;
+  if (in_memory) {
+    source.bytes = format == "png" ? bare_png(bytes, name) : bare_jpeg(bytes, name);
+    source.reader =
+        std::make_unique<OIIO::Filesystem::IOMemReader>(source.bytes.data(), source.bytes.size());
+    source.input->set_ioproxy(source.reader.get());
   }
-  return input;
+  // Absolute, so that no name is taken for something else than a file.
+  const std::string from =
+      in_memory ? "memory." + format : std::filesystem::absolute(path).string();
+  if (!source.input->open(from, spec, open_options())) fail(name, message_of(*source.input));
+  return source;
 }
 
 /// Runs a read and turns what a codec throws into the one exception.
@@ -169,42 +177,34 @@ auto guarded(std::string_view name, Read read) {
 }  // namespace
 
 Image read_image(const std::filesystem::path& path) {
-  return guarded(path.string(), [&] { return read_8bit(*open_file(path), path.string()); });
+  const std::string name = path.string();
+  return guarded(name, [&] {
+    const Source source = open_bytes(read_file(path, kMaxFileBytes), name, path);
+    return read_8bit(*source.input, name);
+  });
 }
 
 Image read_image_rgb(const std::filesystem::path& path) { return to_rgb(read_image(path)); }
 
 Image decode_image(std::span<const std::uint8_t> bytes, std::string_view name) {
-  static constexpr std::array<std::uint8_t, 3> kJpeg{0xff, 0xd8, 0xff};
-  const bool is_jpeg =
-      bytes.size() >= kJpeg.size() && std::equal(kJpeg.begin(), kJpeg.end(), bytes.begin());
-  if (!is_jpeg && !is_png(bytes)) fail(name, "neither a PNG nor a JPEG picture");
-  check_chunks(bytes, name);
   return guarded(name, [&] {
-    OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
-    ImageSpec options = open_options();
-    // As an attribute, because open() with options and a reader finds no format.
-    void* const pointer = &reader;
-    options.attribute("oiio:ioproxy", TypeDesc::PTR, &pointer);
-    ImageInput::unique_ptr input =
-        ImageInput::open(is_jpeg ? "memory.jpg" : "memory.png", &options);
-    if (!input) fail(name, OIIO::geterror());
-    return read_8bit(*input, name);
+    const Source source = open_bytes({bytes.begin(), bytes.end()}, name, {});
+    return read_8bit(*source.input, name);
   });
 }
 
 FloatImage read_float_image(const std::filesystem::path& path) {
   const std::string name = path.string();
   return guarded(name, [&] {
-    ImageInput::unique_ptr input = open_file(path);
-    check_spec(*input, name);
-    const ImageSpec spec = input->spec();
+    const Source source = open_bytes(read_file(path, kMaxFileBytes), name, path);
+    check_spec(*source.input, name);
+    const ImageSpec spec = source.input->spec();
     std::vector<int> channels = select_channels(spec, name);
     if (channels.size() == 1) channels.assign(3, channels[0]);
     channels.resize(3);
     FloatImage image{
         spec.width, spec.height,
-        pick(read_all<float>(*input, TypeDesc::FLOAT, name), spec.nchannels, channels)};
+        pick(read_all<float>(*source.input, TypeDesc::FLOAT, name), spec.nchannels, channels)};
     const auto bad = std::find_if(image.pixels.begin(), image.pixels.end(),
                                   [](float v) { return !std::isfinite(v); });
     if (bad != image.pixels.end()) {

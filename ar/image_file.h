@@ -1,5 +1,6 @@
-// Pictures in and out of files, by OpenImageIO: png, jpeg, tiff, bmp, pnm, tga, webp, exr, hdr in;
-// png out. Sizes are bounded before memory is taken; a damaged or truncated file is refused.
+// Pictures in and out of files, by OpenImageIO: png, jpeg, bmp, pnm, exr and hdr in, known by their
+// first bytes; png out. Sizes are bounded before memory is taken; a damaged or truncated file is
+// refused.
 #pragma once
 
 #include <cstdint>

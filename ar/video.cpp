@@ -142,7 +142,9 @@ VideoReader VideoReader::open_camera(int index) {
   impl->live = true;
   if (index < 0 || index > 99) fail(impl->name, "cameras have numbers 0 to 99");
   try {
-    if (!impl->capture.open(index)) fail(impl->name, "no such camera, or it is in use");
+    // Not any back end: some search every bus of the machine.
+    if (!impl->capture.open(index, cv::CAP_V4L2))
+      fail(impl->name, "no such camera, or it is in use");
   } catch (const cv::Exception& e) {
     fail(impl->name, e.what());
   }
