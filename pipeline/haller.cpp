@@ -106,25 +106,29 @@ class Recorder {
     }
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       if (lights_[i].share <= 0.0f) continue;
-      count_virtual_shadow(lights_[i], volumes_[i]);
+      count_except(volumes_[i].virtual_,
+                   options_.double_shadows ? std::vector<PlacedVolume>{} : volumes_[i].real,
+                   lights_[i], haller_label::kRealVolumes, haller_label::kVirtualVolumes);
+      spare_non_receivers();
       darken(lights_[i]);
     }
   }
 
-  /// Leaves the stencil not 0 where this light's virtual shadow darkens the visible phantom.
-  void count_virtual_shadow(const Light& light, const LightVolumes& volumes) {
-    const bool spare_real_shadow = !options_.double_shadows && !volumes.real.empty();
-    if (spare_real_shadow) {
-      begin(haller_label::kRealVolumes, &light);
+  /// Leaves the stencil not 0 where the visible point lies in a counted volume and in none of
+  /// `except`. Bit 7 remembers the latter, so the counts have seven bits.
+  void count_except(const std::vector<PlacedVolume>& volumes,
+                    const std::vector<PlacedVolume>& except, const Light& light,
+                    const char* except_label, const char* label) {
+    if (!except.empty()) {
+      begin(except_label, &light);
       frame_.clear({.stencil = 0});
-      count(volumes.real, light);
+      count(except, light);
       flag_counts(frame_);
     }
-    begin(haller_label::kVirtualVolumes, &light);
-    if (!spare_real_shadow) frame_.clear({.stencil = 0});
-    count(volumes.virtual_, light, spare_real_shadow ? kSevenBits : std::uint8_t{0xff});
-    if (spare_real_shadow) drop_flagged(frame_);
-    spare_non_receivers();
+    begin(label, &light);
+    if (except.empty()) frame_.clear({.stencil = 0});
+    count(volumes, light, except.empty() ? std::uint8_t{0xff} : kSevenBits);
+    if (!except.empty()) drop_flagged(frame_);
   }
 
   /// Zeroes the stencil where a phantom that receives no shadow is visible.
@@ -253,13 +257,8 @@ class Recorder {
                               .dst_color = raster::BlendFactor::one};
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       // What a virtual object shades already, itself included, the real object takes no light from.
-      begin_mask(haller_label::kMaskVirtualVolumes, &lights_[i]);
-      frame_.clear({.stencil = 0});
-      count(volumes_[i].virtual_, lights_[i]);
-      flag_counts(frame_);
-      begin_mask(haller_label::kMaskRealVolumes, &lights_[i]);
-      count(volumes_[i].real, lights_[i], kSevenBits);
-      drop_flagged(frame_);
+      count_except(volumes_[i].real, volumes_[i].virtual_, lights_[i],
+                   haller_label::kMaskVirtualVolumes, haller_label::kMaskRealVolumes);
       begin_mask(haller_label::kMaskShadowOnVirtual, &lights_[i]);
       draw_mark(glm::vec4(1.0f), {false, true, false, false}, where_counted(), 0, "shadow plane",
                 {}, blend);

@@ -94,8 +94,8 @@ TEST(GeneralMethod, PictureIsTheSumOfTheLightsThatReachAPoint) {
           const bool adds_nothing = lit[i].color.at(x, y) == ambient.color.at(x, y);
           if (adds_nothing || reaches == lights[i]) continue;
           ++wrong;
-          unexplained +=
-              test::why(rays, camera, light, x, y, true, !lights[i]) == test::Reason::none;
+          unexplained += test::why(scene, rays, camera, light, x, y, full.depth.at(x, y),
+                                   !lights[i]) == test::Reason::none;
         }
       }
     }

@@ -262,7 +262,7 @@ TEST(Haller, MasksEqualTheRaysButForPixelsAtEdges) {
     std::printf("%s mask: %zu pixels set, %zu differ from the rays, %zu of them not at an edge\n",
                 names[k], errors[k].set, errors[k].wrong, errors[k].unexplained);
     EXPECT_EQ(errors[k].unexplained, 0u);
-    EXPECT_GT(errors[k].set, 5000u);
+    EXPECT_GT(errors[k].set, 2000u);
     EXPECT_LT(errors[k].wrong, errors[k].set / 100);
   }
 }

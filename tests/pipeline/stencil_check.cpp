@@ -32,34 +32,76 @@ bool edge_within_a_pixel(const RayReference& rays, const Camera& camera, const g
   return false;
 }
 
-/// How far along the ray, in metres, the buffer may see two nearly coplanar surfaces displaced: two
+/// Pixels and a depth buffer's [0, 1] (nearer than the near plane: below 0).
+glm::dvec3 to_window(const Camera& camera, const glm::dvec3& p) {
+  const glm::dvec4 c = glm::dmat4(camera.clip_from_world) * glm::dvec4(p, 1.0);
+  return glm::dvec3(camera.width * 0.5 * c.x, camera.height * 0.5 * c.y, 0.5 * c.z) / c.w +
+         glm::dvec3(0.0, 0.0, 0.5);
+}
+
+constexpr double kD24 = 16777215.0;
+
+/// One unit of the depth buffer, and one pixel, in metres at a hit.
+struct Scales {
+  double unit_m, pixel_m, tie_m;
+};
+
+/// tie_m is how far along the ray the buffer may see two nearly coplanar surfaces displaced: two
 /// units of D24, float32's rounding of the corners, and each surface's corners snapped by up to
 /// half of 1/256 pixel in x and y, times the surface's slope.
-double tie_step_m(const Camera& camera, const RayHit& hit) {
-  const glm::dmat4 clip(camera.clip_from_world);
-  const glm::dvec3 eye(camera.eye_world);
-  const glm::dvec3 along = glm::normalize(hit.point - eye);
-  const auto window = [&](const glm::dvec3& p) {
-    const glm::dvec4 c = clip * glm::dvec4(p, 1.0);
-    return glm::dvec3(camera.width * 0.5 * c.x, camera.height * 0.5 * c.y, 0.5 * c.z) / c.w;
-  };
+Scales scales_at(const Camera& camera, const RayHit& hit) {
+  const glm::dvec3 along = glm::normalize(hit.point - glm::dvec3(camera.eye_world));
   const double probe = 1e-4;
+  const glm::dvec3 here = to_window(camera, hit.point);
   const double unit_m =
-      probe / std::abs(window(hit.point + probe * along).z - window(hit.point).z) / 16777215.0;
+      probe / std::abs(to_window(camera, hit.point + probe * along).z - here.z) / kD24;
   const glm::dvec3 side = glm::normalize(glm::cross(
       along, std::abs(along.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0)));
   const double pixel_m =
-      probe / glm::length(glm::dvec2(window(hit.point + probe * side) - window(hit.point)));
+      probe / glm::length(glm::dvec2(to_window(camera, hit.point + probe * side) - here));
   const double cosine = std::abs(glm::dot(hit.normal, along));
   const double slope = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) / std::max(cosine, 1e-6);
-  return 2.0 * unit_m + 2e-6 + std::sqrt(2.0) / 256.0 * pixel_m * slope;
+  return {unit_m, pixel_m, 2.0 * unit_m + 2e-6 + std::sqrt(2.0) / 256.0 * pixel_m * slope};
+}
+
+/// Does the depth buffer hold another surface than the ray's, displaced by more than a tie?
+bool shows_another_surface(const Camera& camera, const RayHit& hit, std::uint32_t depth) {
+  const Scales scales = scales_at(camera, hit);
+  const double z = std::clamp(to_window(camera, hit.point).z, 0.0, 1.0) * kD24;
+  return std::abs(z - depth) * scales.unit_m > scales.tie_m;
+}
+
+double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
+  const glm::dvec2 edge = b - a;
+  const double square = glm::dot(edge, edge);
+  const double t = square > 0.0 ? std::clamp(glm::dot(p - a, edge) / square, 0.0, 1.0) : 0.0;
+  return glm::length(a + edge * t - p);
+}
+
+/// Does an edge of a mesh pass within one pixel, as the camera sees it? A sheet seen edge-on slips
+/// between rays, not between pixels that its snapped corners cover.
+bool mesh_edge_within_a_pixel(const Scene& scene, const Camera& camera, int x, int y) {
+  const glm::dvec2 pixel(x + 0.5 - camera.width * 0.5, y + 0.5 - camera.height * 0.5);
+  for (const Object& object : scene.objects) {
+    const Mesh& mesh = object.model->parts[0].mesh;
+    const glm::dmat4 world(object.world_from_model);
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+      const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
+      const glm::dvec3 a(world * glm::dvec4(mesh.positions[mesh.indices[i]]));
+      const glm::dvec3 b(world * glm::dvec4(mesh.positions[mesh.indices[next]]));
+      const glm::dvec3 wa = to_window(camera, a), wb = to_window(camera, b);
+      if (wa.z < 0.0 || wa.z > 1.0 || wb.z < 0.0 || wb.z > 1.0) continue;
+      if (distance_to_segment(pixel, glm::dvec2(wa), glm::dvec2(wb)) <= 1.0) return true;
+    }
+  }
+  return false;
 }
 
 /// Do the rays say what the stencil says when the visible point moves towards the viewer (never
 /// into its own body) by no more than that?
 bool is_depth_tie(const RayReference& rays, const Camera& camera, const RayHit& hit,
                   const glm::vec4& light, bool counted_shadow) {
-  const double step = tie_step_m(camera, hit);
+  const double step = scales_at(camera, hit).tie_m;
   const glm::dvec3 back = glm::normalize(glm::dvec3(camera.eye_world) - hit.point);
   for (const double move : {0.25, 0.5, 1.0}) {
     if (rays.blocked(hit.point + back * (move * step), light) == counted_shadow) return true;
@@ -70,6 +112,7 @@ bool is_depth_tie(const RayReference& rays, const Camera& camera, const RayHit& 
 }  // namespace
 
 Disagreement& Disagreement::operator+=(const Disagreement& other) {
+  before_near += other.before_near;
   tested += other.tested;
   wrong += other.wrong;
   at_edge += other.at_edge;
@@ -102,29 +145,39 @@ Counted count_scene(const Scene& scene, const Camera& camera, const VolumeOption
   return counted;
 }
 
-Reason why(const RayReference& rays, const Camera& camera, const glm::vec4& light, int x, int y,
-           bool drawn, bool counted_shadow) {
+Reason why(const Scene& scene, const RayReference& rays, const Camera& camera,
+           const glm::vec4& light, int x, int y, std::uint32_t depth, bool counted_shadow) {
   const RayHit hit = rays.trace(window_ray(camera, x + 0.5, y + 0.5));
-  if (edge_within_a_pixel(rays, camera, light, x, y, drawn, hit.hit, counted_shadow)) {
+  const bool drawn = depth != raster::DepthBuffer(1, 1).max_value();
+  if (edge_within_a_pixel(rays, camera, light, x, y, drawn, hit.hit, counted_shadow) ||
+      (drawn && hit.hit && shows_another_surface(camera, hit, depth)) ||
+      (drawn && !hit.hit && mesh_edge_within_a_pixel(scene, camera, x, y))) {
     return Reason::edge;
   }
   if (hit.hit && is_depth_tie(rays, camera, hit, light, counted_shadow)) return Reason::depth_tie;
   return Reason::none;
 }
 
-Disagreement compare_with_rays(const Counted& counted, const RayReference& rays,
-                               const Camera& camera, const glm::vec4& light) {
+Disagreement compare_with_rays(const Counted& counted, const Scene& scene, const RayReference& rays,
+                               const Camera& camera) {
+  const glm::vec4 light = scene.lights[0].position;
   Disagreement result;
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
       const bool drawn = counted.depth.at(x, y) != counted.depth.max_value();
       const RayHit hit = rays.trace(window_ray(camera, x + 0.5, y + 0.5));
       if (!drawn && !hit.hit) continue;
+      // In front of the near plane there is one depth, 0, for everything.
+      if (hit.hit && to_window(camera, hit.point).z < 0.0) {
+        ++result.before_near;
+        continue;
+      }
       ++result.tested;
       const bool counted_shadow = counted.stencil.at(x, y) != 0;
       if (hit.hit && rays.shadow(hit, light).in_shadow == counted_shadow) continue;
       ++result.wrong;
-      const Reason reason = why(rays, camera, light, x, y, drawn, counted_shadow);
+      const Reason reason =
+          why(scene, rays, camera, light, x, y, counted.depth.at(x, y), counted_shadow);
       result.at_edge += reason == Reason::edge;
       result.depth_tie += reason == Reason::depth_tie;
       result.unexplained += reason == Reason::none;

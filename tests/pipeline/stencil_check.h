@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "pipeline/count_volumes.h"
@@ -24,14 +25,17 @@ Counted count_scene(const pipeline::Scene& scene, const pipeline::Camera& camera
 enum class Reason { edge, depth_tie, none };
 
 /// Why the rays may see light where `counted_shadow` says shadow at a pixel, or the other way.
-/// `drawn`: the buffers show a surface there.
-Reason why(const pipeline::RayReference& rays, const pipeline::Camera& camera,
-           const glm::vec4& light, int x, int y, bool drawn, bool counted_shadow);
+/// `depth` is what a D24 buffer holds there.
+Reason why(const pipeline::Scene& scene, const pipeline::RayReference& rays,
+           const pipeline::Camera& camera, const glm::vec4& light, int x, int y,
+           std::uint32_t depth, bool counted_shadow);
 
 struct Disagreement {
-  std::size_t tested = 0, wrong = 0;
-  /// Wrong pixels with a place within one pixel where the rays say what the stencil says: a
-  /// silhouette or a shadow's edge passes there.
+  /// Pixels that show a surface; those of a surface in front of the near plane are left out.
+  std::size_t tested = 0, before_near = 0;
+  std::size_t wrong = 0;
+  /// Wrong pixels with a place within one pixel where the rays say what the stencil says, or where
+  /// the depth buffer holds another surface than the ray's: a silhouette or a shadow's edge passes.
   std::size_t at_edge = 0;
   /// Wrong pixels whose visible point changes between light and shadow when it moves by two units
   /// of the depth buffer (and float32's rounding of the corners).
@@ -40,8 +44,8 @@ struct Disagreement {
   Disagreement& operator+=(const Disagreement& other);
 };
 
-/// Compares every pixel that shows a surface.
-Disagreement compare_with_rays(const Counted& counted, const pipeline::RayReference& rays,
-                               const pipeline::Camera& camera, const glm::vec4& light);
+/// Compares every pixel that shows a surface; the light is the scene's first.
+Disagreement compare_with_rays(const Counted& counted, const pipeline::Scene& scene,
+                               const pipeline::RayReference& rays, const pipeline::Camera& camera);
 
 }  // namespace gnomon::test
