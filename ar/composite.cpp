@@ -9,31 +9,51 @@ namespace gnomon::ar {
 
 namespace {
 
-/// Sums over the view pixels under one pixel of the photograph.
+/// View pixels u0 <= u < u1, v0 <= v < v1, v from the top.
 struct Footprint {
-  int count = 0;
-  bool changed = false;
+  int u0, v0, u1, v1;
+  int count() const { return std::max(0, u1 - u0) * std::max(0, v1 - v0); }
+};
+
+/// The `samples` x `samples` view pixels round a point, inside the view.
+Footprint footprint(const PinholeView& view, glm::vec2 center) {
+  const auto start = [&](float c) {
+    return static_cast<int>(std::floor(c - 0.5f * static_cast<float>(view.samples() - 1) + 0.5f));
+  };
+  const int u = start(center.x), v = start(center.y);
+  return {std::max(u, 0), std::max(v, 0), std::min(u + view.samples(), view.width()),
+          std::min(v + view.samples(), view.height())};
+}
+
+/// Index of a view pixel in rows that begin at the bottom.
+std::size_t from_bottom(const PinholeView& view, int u, int v) {
+  return static_cast<std::size_t>(view.height() - 1 - v) * view.width() + u;
+}
+
+bool untouched(const PinholeView& view, const Footprint& at, const Image& resampled,
+               const std::vector<std::uint8_t>& drawn) {
+  for (int v = at.v0; v < at.v1; ++v)
+    for (int u = at.u0; u < at.u1; ++u) {
+      const std::uint8_t* d = drawn.data() + 4 * from_bottom(view, u, v);
+      const std::uint8_t* b = resampled.at(u, v);
+      if (d[3] != 0 || d[0] != b[0] || d[1] != b[1] || d[2] != b[2]) return false;
+    }
+  return true;
+}
+
+/// Sums over a footprint's view pixels.
+struct Sums {
   double object_share = 0.0;
   glm::dvec3 object_color{0.0}, drawn{0.0}, resampled{0.0};
 };
 
-/// The view pixel where a footprint of `samples` pixels round `center` begins.
-int footprint_start(float center, int samples) {
-  return static_cast<int>(std::floor(center - 0.5f * static_cast<float>(samples - 1) + 0.5f));
-}
-
-Footprint gather(const PinholeView& view, glm::vec2 center, const Image& resampled,
-                 const std::vector<std::uint8_t>& drawn) {
-  Footprint sum;
-  const int samples = view.samples();
-  const int u0 = footprint_start(center.x, samples), v0 = footprint_start(center.y, samples);
-  for (int v = std::max(v0, 0); v < std::min(v0 + samples, view.height()); ++v)
-    for (int u = std::max(u0, 0); u < std::min(u0 + samples, view.width()); ++u) {
-      const std::size_t from_bottom =
-          static_cast<std::size_t>(view.height() - 1 - v) * view.width() + u;
-      const std::uint8_t* d = drawn.data() + 4 * from_bottom;
+Sums gather(const PinholeView& view, const Footprint& at, const Image& resampled,
+            const std::vector<std::uint8_t>& drawn) {
+  Sums sum;
+  for (int v = at.v0; v < at.v1; ++v)
+    for (int u = at.u0; u < at.u1; ++u) {
+      const std::uint8_t* d = drawn.data() + 4 * from_bottom(view, u, v);
       const std::uint8_t* b = resampled.at(u, v);
-      sum.changed |= d[3] != 0 || d[0] != b[0] || d[1] != b[1] || d[2] != b[2];
       const double alpha = d[3] / 255.0;
       sum.object_share += alpha;
       for (int c = 0; c < 3; ++c) {
@@ -41,7 +61,6 @@ Footprint gather(const PinholeView& view, glm::vec2 center, const Image& resampl
         sum.drawn[c] += (1.0 - alpha) * d[c];
         sum.resampled[c] += (1.0 - alpha) * b[c];
       }
-      ++sum.count;
     }
   return sum;
 }
@@ -55,18 +74,27 @@ double covered_share(const PinholeView& view, const std::vector<std::uint8_t>& r
   // Pixel u of the view spans [u - 1/2, u + 1/2].
   const double half = 0.5 * view.samples();
   const glm::dvec2 low = glm::dvec2(center) - half, high = glm::dvec2(center) + half;
+  const auto first = [](double from) {
+    return std::max(0, static_cast<int>(std::floor(from + 0.5)));
+  };
+  const auto end = [](double to, int size) {
+    return std::min(size, static_cast<int>(std::ceil(to + 0.5)));
+  };
+  const int u0 = first(low.x), u1 = end(high.x, view.width());
+  const int v0 = first(low.y), v1 = end(high.y, view.height());
+  bool any = false;
+  for (int v = v0; v < v1; ++v)
+    for (int u = u0; u < u1; ++u) any |= rgba_rows[4 * from_bottom(view, u, v) + channel] != 0;
+  if (!any) return 0.0;
   const auto weight = [](int i, double from, double to) {
     return std::max(0.0, std::min(i + 0.5, to) - std::max(i - 0.5, from));
   };
   double covered = 0.0, total = 0.0;
-  for (int v = std::max(0, static_cast<int>(std::floor(low.y + 0.5)));
-       v < view.height() && v - 0.5 < high.y; ++v)
-    for (int u = std::max(0, static_cast<int>(std::floor(low.x + 0.5)));
-         u < view.width() && u - 0.5 < high.x; ++u) {
+  for (int v = v0; v < v1; ++v)
+    for (int u = u0; u < u1; ++u) {
       const double area = weight(u, low.x, high.x) * weight(v, low.y, high.y);
-      const std::size_t i = static_cast<std::size_t>(view.height() - 1 - v) * view.width() + u;
       total += area;
-      if (rgba_rows[4 * i + channel] != 0) covered += area;
+      if (rgba_rows[4 * from_bottom(view, u, v) + channel] != 0) covered += area;
     }
   return total > 0.0 ? covered / total : 0.0;
 }
@@ -82,13 +110,14 @@ Image composite(const PinholeView& view, const Image& photograph, const Image& r
     for (int x = 0; x < out.width; ++x) {
       const glm::vec2 center = view.view_from_photo(x, y);
       if (std::isnan(center.x)) continue;
-      const Footprint sum = gather(view, center, resampled, rows);
-      if (!sum.changed) continue;
-      const double share = sum.object_share / sum.count;
+      const Footprint at = footprint(view, center);
+      if (untouched(view, at, resampled, rows)) continue;
+      const Sums sum = gather(view, at, resampled, rows);
+      const double share = sum.object_share / at.count();
       for (int c = 0; c < 3; ++c) {
         const double kept = sum.resampled[c] > 0.0 ? sum.drawn[c] / sum.resampled[c] : 1.0;
         const double value =
-            sum.object_color[c] / sum.count + (1.0 - share) * kept * photograph.at(x, y)[c];
+            sum.object_color[c] / at.count() + (1.0 - share) * kept * photograph.at(x, y)[c];
         out.at(x, y)[c] = static_cast<std::uint8_t>(std::lrint(std::clamp(value, 0.0, 255.0)));
       }
     }

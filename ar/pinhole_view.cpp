@@ -14,7 +14,8 @@ namespace gnomon::ar {
 
 namespace {
 
-constexpr int kSamplesOfADistortedLens = 4;
+/// Enough for smooth edges; a distorted lens also wants its pixels found to an eighth.
+constexpr int kSamples = 2, kSamplesOfADistortedLens = 4;
 constexpr int kMostSamples = 8;
 /// A view needs memory for three buffers and two maps; this many pixels take about 1.5 GB.
 constexpr double kMostViewPixels = 64.0e6;
@@ -52,7 +53,7 @@ PinholeView::PinholeView(const Lens& lens, int samples) {
   photo_width_ = camera.width;
   photo_height_ = camera.height;
   const bool distorted = distorts(camera);
-  samples_ = samples > 0 ? samples : (distorted ? kSamplesOfADistortedLens : 1);
+  samples_ = samples > 0 ? samples : (distorted ? kSamplesOfADistortedLens : kSamples);
 
   Extent extent{{(-0.5 - camera.cx) / camera.fx, (-0.5 - camera.cy) / camera.fy},
                 {(camera.width - 0.5 - camera.cx) / camera.fx,

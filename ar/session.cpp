@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "ar/camera.h"
+#include "ar/error.h"
 #include "ar/response.h"
 #include "ar/tag_layout_file.h"
 
@@ -75,6 +76,7 @@ struct Session::Impl {
         augmenter(lens, augment_options(scene_file, options)) {
     models = load_models(file, &notes);
     if (file.tags_yaml) add_bundles(*file.tags_yaml);
+    check_bodies();
     if (!layout.world.tags.empty() || !layout.bodies.empty())
       tracker.emplace(lens.camera(), layout, tracker_options(file, options));
   }
@@ -84,6 +86,16 @@ struct Session::Impl {
     layout.world.tags.insert(layout.world.tags.end(), read.world.tags.begin(),
                              read.world.tags.end());
     layout.bodies.insert(layout.bodies.end(), read.bodies.begin(), read.bodies.end());
+  }
+
+  /// Bodies of a ROS file are only known here; the scene file's own were checked by its reader.
+  void check_bodies() const {
+    for (const SceneObject& object : file.objects) {
+      const auto named = [&](const TaggedBody& body) { return body.name == object.attached_to; };
+      if (!object.attached_to.empty() && std::ranges::none_of(layout.bodies, named))
+        throw InputError(file.file.string() + ": [object '" + object.name +
+                         "'].attached_to: there is no body '" + object.attached_to + "'");
+    }
   }
 
   /// The pose of the body with this name in the world.

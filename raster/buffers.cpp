@@ -1,17 +1,25 @@
 #include "raster/buffers.h"
 
+#include <algorithm>
+
 #include "raster/unorm.h"
 
 namespace gnomon::raster {
 
 namespace {
 
+/// Row-wise values from the tile-linear plane, block by block.
 template <class T, class Out, class Convert>
 std::vector<Out> rows(const TiledPlane<T>& plane, Convert convert) {
-  std::vector<Out> out;
-  out.reserve(static_cast<std::size_t>(plane.width()) * plane.height());
-  for (int y = 0; y < plane.height(); ++y)
-    for (int x = 0; x < plane.width(); ++x) out.push_back(convert(plane.at(x, y)));
+  std::vector<Out> out(static_cast<std::size_t>(plane.width()) * plane.height());
+  for (int y0 = 0; y0 < plane.height(); y0 += kBlockSize)
+    for (int x0 = 0; x0 < plane.width(); x0 += kBlockSize) {
+      const T* block = &plane.at(x0, y0);
+      for (int y = y0; y < std::min(y0 + kBlockSize, plane.height()); ++y)
+        for (int x = x0; x < std::min(x0 + kBlockSize, plane.width()); ++x)
+          out[static_cast<std::size_t>(y) * plane.width() + x] =
+              convert(block[(y - y0) * kBlockSize + (x - x0)]);
+    }
   return out;
 }
 
@@ -60,9 +68,9 @@ std::vector<std::uint8_t> ColorBuffer::to_rgba8_rows() const {
       format_ == ColorFormat::rgba8
           ? rows(rgba8())
           : rows<glm::vec4, Rgba8>(rgba32f(), [](const glm::vec4& c) { return to_rgba8(c); });
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(pixels.size() * 4);
-  for (const Rgba8& pixel : pixels) bytes.insert(bytes.end(), pixel.begin(), pixel.end());
+  std::vector<std::uint8_t> bytes(pixels.size() * 4);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    std::copy_n(pixels[i].begin(), 4, bytes.begin() + static_cast<std::ptrdiff_t>(4 * i));
   return bytes;
 }
 

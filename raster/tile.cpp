@@ -64,6 +64,22 @@ void write_color(ColorBuffer& target, TileIndex tile, std::size_t offset, const 
   }
 }
 
+glm::vec4 to_floats(const Rgba8& c) {
+  return {unorm8_to_float(c[0]), unorm8_to_float(c[1]), unorm8_to_float(c[2]),
+          unorm8_to_float(c[3])};
+}
+
+void store_masked(const Rgba8& source, const std::array<bool, 4>& write, Rgba8& stored) {
+  for (std::size_t c = 0; c < 4; ++c)
+    if (write[c]) stored[c] = source[c];
+}
+
+/// The draw's fragments all have one colour.
+bool is_constant(const Draw& draw) {
+  const Flat* flat = std::get_if<Flat>(&draw.shading);
+  return flat && !flat->texture && draw.mesh.colors.empty();
+}
+
 bool any(const std::array<bool, 4>& write) { return write[0] || write[1] || write[2] || write[3]; }
 
 FragmentTests resolve_tests(const Draw& draw, const Targets& targets, bool front_facing) {
@@ -164,9 +180,11 @@ void blit_tile(const Blit& blit, const Targets& targets, TileIndex tile) noexcep
                 py = y + static_cast<int>(i) / kBlockSize;
       const std::uint8_t* c = blit.image.pixel(px - blit.x, py - blit.y);
       const std::uint8_t alpha = blit.image.channels == 4 ? c[3] : std::uint8_t{0};
-      const glm::vec4 color(unorm8_to_float(c[0]), unorm8_to_float(c[1]), unorm8_to_float(c[2]),
-                            unorm8_to_float(alpha));
-      write_color(target, tile, offset + i, state, color);
+      const Rgba8 source{c[0], c[1], c[2], alpha};
+      if (target.format() == ColorFormat::rgba8)
+        store_masked(source, blit.color_write, target.rgba8().tile(tile.x, tile.y)[offset + i]);
+      else
+        write_color(target, tile, offset + i, state, to_floats(source));
     });
   });
 }
@@ -176,6 +194,8 @@ void draw_tile(const DrawSetup& setup, const SetupTriangle& triangle, const Targ
   const Draw& draw = *setup.draw;
   const FragmentTests tests = resolve_tests(draw, targets, triangle.front_facing);
   const bool color = targets.color && any(draw.state.color.write);
+  const std::optional<glm::vec4> constant =
+      color && is_constant(draw) ? std::optional(shade(draw.shading, Fragment{})) : std::nullopt;
   std::uint32_t* const depth =
       targets.depth ? targets.depth->plane().tile(tile.x, tile.y) : nullptr;
   std::uint8_t* const stencil =
@@ -194,6 +214,12 @@ void draw_tile(const DrawSetup& setup, const SetupTriangle& triangle, const Targ
     const PixelMask passed = test_block(tests, covered, plane, depth ? depth + offset : nullptr,
                                         stencil ? stencil + offset : nullptr);
     if (!color) return;
+    if (constant) {
+      for_each_pixel(passed, [&](std::size_t i) {
+        write_color(*targets.color, tile, offset + i, draw.state.color, *constant);
+      });
+      return;
+    }
     for_each_pixel(passed, [&](std::size_t i) {
       const int px = x + static_cast<int>(i) % kBlockSize,
                 py = y + static_cast<int>(i) / kBlockSize;
