@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cctype>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/ar_arguments.h"
+#include "apps/ar_json.h"
+#include "ar/error.h"
+#include "ar/image_file.h"
+
+namespace gnomon::apps {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+int count_set(const ar::Image& mask) {
+  return static_cast<int>(std::ranges::count(mask.pixels, std::uint8_t{255}));
+}
+
+/// "step 2: volumes of ..." as part of a file name.
+std::string file_name_of(std::string label) {
+  for (char& c : label)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  std::string name;
+  for (const char c : label)
+    if (c != '_' || (!name.empty() && name.back() != '_')) name += c;
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  return name;
+}
+
+void write_steps(const fs::path& out, const std::vector<ar::PassPictures>& steps) {
+  const fs::path folder = out / "steps";
+  make_folder(folder);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::string name = fmt::format("{:02}_{}", i + 1, file_name_of(steps[i].label));
+    ar::write_png(folder / (name + "_color.png"), steps[i].color);
+    ar::write_png(folder / (name + "_depth.png"), steps[i].depth);
+    ar::write_png(folder / (name + "_stencil.png"), steps[i].stencil);
+  }
+}
+
+void report_left_out(const ar::SessionResult& result) {
+  for (const std::string& name : result.left_out)
+    std::cerr << "gnomon: note: object '" << name
+              << "' is left out: its body's tags are not seen\n";
+}
+
+}  // namespace
+
+void make_folder(const fs::path& out) {
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error || !fs::is_directory(out))
+    throw ar::InputError(out.string() + ": cannot make this folder: " +
+                         (error ? error.message() : "a file has its name"));
+  if (access(out.c_str(), W_OK | X_OK) != 0)
+    throw ar::InputError(out.string() + ": this folder cannot be written");
+}
+
+void run_still(const ArArguments& arguments) {
+  const ar::SceneFile scene = ar::read_scene(arguments.scene);
+  const ar::Image picture = ar::read_image_rgb(arguments.image);
+  ar::Session session(scene, picture.width, picture.height, arguments.session);
+  for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
+  const ar::SessionResult result = session.process(picture, 0.0);
+  if (!result.augmented)
+    throw ar::InputError(fmt::format(
+        "{}: no pose for any virtual object: {} tags found, none of the scene's that "
+        "are needed ({})",
+        arguments.image.string(), result.track.detections.size(), session.known_tags()));
+  const ar::Augmented& augmented = *result.augmented;
+  make_folder(arguments.out);
+  ar::write_png(arguments.out / "composite.png", augmented.composite);
+  ar::write_png(arguments.out / "shadow_mask.png", augmented.shadow_mask);
+  ar::write_png(arguments.out / "shadow_on_virtual.png", augmented.shadow_on_virtual);
+  ar::write_png(arguments.out / "object_mask.png", augmented.object_mask);
+  ar::write_png(arguments.out / "stencil_counts.png", augmented.stencil_counts);
+  if (arguments.steps) write_steps(arguments.out, augmented.steps);
+
+  if (arguments.as_json) {
+    const json line = {{"image", arguments.image.string()},
+                       {"tags", detections_json(result.track)},
+                       {"poses", poses_json(result)},
+                       {"left_out", result.left_out},
+                       {"view", {session.view().width(), session.view().height()}},
+                       {"passes", passes_json(augmented)},
+                       {"pixels",
+                        {{"shadow", count_set(augmented.shadow_mask)},
+                         {"shadow_on_virtual", count_set(augmented.shadow_on_virtual)},
+                         {"object", count_set(augmented.object_mask)}}},
+                       {"ms", stages_json(result)}};
+    std::cout << line.dump() << '\n';
+    return;
+  }
+  report_left_out(result);
+  std::cout << fmt::format(
+      "{}: {} tags, {} passes, {} px of virtual objects, {} px of shadow on real "
+      "surfaces, {} px of real shadow on virtual ones\n",
+      arguments.image.string(), result.track.detections.size(), augmented.passes.size(),
+      count_set(augmented.object_mask), count_set(augmented.shadow_mask),
+      count_set(augmented.shadow_on_virtual));
+  std::cout << "wrote " << (arguments.out / "composite.png").string() << " and its masks\n";
+}
+
+}  // namespace gnomon::apps

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <iostream>
+#include <optional>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/ar_arguments.h"
+#include "apps/ar_json.h"
+#include "ar/video.h"
+
+namespace gnomon::apps {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+/// Frames done and to do, on a terminal's last line only.
+class Progress {
+ public:
+  explicit Progress(std::optional<std::int64_t> total) : total_(total), shown_(isatty(2) == 1) {}
+  ~Progress() {
+    if (shown_) std::cerr << "\r\033[K";
+  }
+  void show(std::int64_t done) const {
+    if (!shown_) return;
+    if (!total_ || *total_ <= 0) {
+      std::cerr << "\rframe " << done << std::flush;
+      return;
+    }
+    constexpr int kWidth = 40;
+    const int filled = static_cast<int>(std::min<std::int64_t>(kWidth, done * kWidth / *total_));
+    std::cerr << fmt::format("\r[{:<{}}] {}/{}", std::string(filled, '#'), kWidth, done, *total_)
+              << std::flush;
+  }
+
+ private:
+  std::optional<std::int64_t> total_;
+  bool shown_;
+};
+
+struct VideoSummary {
+  std::int64_t frames = 0, augmented = 0, without_pose = 0, held = 0, missing = 0;
+  double track_ms = 0.0, draw_ms = 0.0;
+
+  void add(const ar::SessionResult& result) {
+    ++frames;
+    track_ms += result.track_ms;
+    if (!result.augmented) {
+      ++without_pose;
+      return;
+    }
+    ++augmented;
+    held +=
+        result.track.world.held || std::ranges::any_of(result.track.bodies, &ar::BodyTrack::held);
+    const ar::Augmented& a = *result.augmented;
+    draw_ms += a.resample_ms + a.record_ms + a.execute_ms + a.composite_ms;
+  }
+};
+
+}  // namespace
+
+void run_video(const ArArguments& arguments) {
+  const ar::SceneFile scene = ar::read_scene(arguments.scene);
+  ar::VideoReader reader = arguments.camera >= 0 ? ar::VideoReader::open_camera(arguments.camera)
+                                                 : ar::VideoReader::open_file(arguments.video);
+  ar::SessionOptions options = arguments.session;
+  options.masks = false;
+  ar::Session session(scene, reader.width(), reader.height(), options);
+  for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
+  make_folder(arguments.out);
+  const fs::path target = arguments.out / "composite.avi";
+  ar::VideoWriter writer(target, reader.width(), reader.height(), reader.frames_per_second());
+
+  VideoSummary summary;
+  {
+    std::optional<std::int64_t> total = reader.promised_frames();
+    if (arguments.frames > 0)
+      total = std::min<std::int64_t>(total.value_or(arguments.frames), arguments.frames);
+    const Progress progress(total);
+    while (arguments.frames == 0 || summary.frames < arguments.frames) {
+      const std::optional<ar::VideoFrame> frame = reader.next();
+      if (!frame) break;
+      const ar::SessionResult result = session.process(frame->image, frame->time_s);
+      writer.write(result.augmented ? result.augmented->composite : frame->image);
+      summary.add(result);
+      if (arguments.as_json)
+        std::cout << json{{"frame", frame->index},
+                          {"time_s", frame->time_s},
+                          {"tags", detections_json(result.track)},
+                          {"poses", poses_json(result)},
+                          {"left_out", result.left_out},
+                          {"augmented", result.augmented.has_value()},
+                          {"ms", stages_json(result)}}
+                         .dump()
+                  << '\n';
+      progress.show(summary.frames);
+    }
+  }
+  writer.close();
+  summary.missing = reader.missing_frames();
+  const double frames = static_cast<double>(std::max<std::int64_t>(summary.frames, 1));
+  const double drawn = static_cast<double>(std::max<std::int64_t>(summary.augmented, 1));
+  if (arguments.as_json) {
+    std::cout << json{{"frames", summary.frames},
+                      {"augmented", summary.augmented},
+                      {"without_pose", summary.without_pose},
+                      {"held", summary.held},
+                      {"missing", summary.missing},
+                      {"ms_a_frame",
+                       {{"track", summary.track_ms / frames}, {"draw", summary.draw_ms / drawn}}}}
+                     .dump()
+              << '\n';
+    return;
+  }
+  std::cout << fmt::format(
+      "{} frames: {} augmented ({} with a held pose), {} without a pose kept as they "
+      "are; {:.1f} ms tracking and {:.1f} ms drawing a frame\n",
+      summary.frames, summary.augmented, summary.held, summary.without_pose,
+      summary.track_ms / frames, summary.draw_ms / drawn);
+  if (summary.missing > 0)
+    std::cout << fmt::format("the video ends early: its header promises {} frames more\n",
+                             summary.missing);
+  std::cout << "wrote " << target.string() << '\n';
+}
+
+}  // namespace gnomon::apps
