@@ -30,8 +30,9 @@ Extrusion extrusion_of(int scene) {
 void report(const char* what, const test::Disagreement& sum, std::size_t shadowed) {
   std::printf(
       "%s: %d scenes, %zu pixels tested (%zu in shadow), %zu wrong: %zu within a pixel of an edge, "
-      "%zu depth ties, %zu unexplained\n",
-      what, kScenes, sum.tested, shadowed, sum.wrong, sum.at_edge, sum.depth_tie, sum.unexplained);
+      "%zu depth ties, %zu unexplained; %zu before the near plane left out\n",
+      what, kScenes, sum.tested, shadowed, sum.wrong, sum.at_edge, sum.depth_tie, sum.unexplained,
+      sum.before_near);
 }
 
 std::size_t shadowed_pixels(const test::Counted& counted) {
