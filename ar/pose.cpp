@@ -211,37 +211,66 @@ std::vector<glm::dmat4> square_poses(const Lens& lens, const TagView& view) {
   return poses;
 }
 
-/// Fits from a start, leaving out the tag that disagrees most as long as one does.
-PoseFit fit_without_outliers(const Lens& lens, std::span<const TagView> views,
-                             const PoseOptions& options, const glm::dmat4& start) {
-  PoseFit result;
-  result.used.assign(views.size(), true);
-  result.camera_from_body = fit(lens, views, result.used, start);
-  std::vector<double> errors(views.size());
-  for (std::size_t round = 0; round < views.size(); ++round) {
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      errors[v] = std::sqrt(mean_squared_px(lens, views[v], result.camera_from_body));
+double rms_of_used(const Lens& lens, std::span<const TagView> views, const PoseFit& fit) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (!fit.used[v]) continue;
+    sum += mean_squared_px(lens, views[v], fit.camera_from_body);
+    ++count;
+  }
+  return std::sqrt(sum / std::max(count, 1));
+}
+
+double worst_of_used(const Lens& lens, std::span<const TagView> views, const PoseFit& fit) {
+  double worst = 0.0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (fit.used[v]) worst = std::max(worst, mean_squared_px(lens, views[v], fit.camera_from_body));
+  }
+  return std::sqrt(worst);
+}
+
+/// The best fit without one of the tags used. Every tag is tried, because a wrong one bends the
+/// pose and makes others look wrong. Of two tags either explains itself: the one nearer to `start`
+/// stays.
+PoseFit fit_without_one(const Lens& lens, std::span<const TagView> views, const PoseFit& with,
+                        const glm::dmat4& start) {
+  PoseFit best;
+  double best_score = 0.0;
+  const bool pair = std::count(with.used.begin(), with.used.end(), true) == 2;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (!with.used[v]) continue;
+    PoseFit candidate = with;
+    candidate.used[v] = false;
+    candidate.camera_from_body =
+        fit(lens, views, candidate.used, pair ? start : with.camera_from_body);
+    const double score =
+        pair ? -mean_squared_px(lens, views[v], start) : rms_of_used(lens, views, candidate);
+    if (best.used.empty() || score < best_score) {
+      best = std::move(candidate);
+      best_score = score;
     }
-    std::vector<double> sorted = errors;
-    std::sort(sorted.begin(), sorted.end());
-    const double limit = std::max(options.outlier_px, 3.0 * sorted[(sorted.size() - 1) / 2]);
-    std::vector<bool> used(views.size());
-    for (std::size_t v = 0; v < views.size(); ++v) used[v] = errors[v] <= limit;
-    // One at a time: the worst tag bends the pose and makes others look wrong.
-    std::size_t worst = views.size();
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      if (result.used[v] && !used[v] && (worst == views.size() || errors[v] > errors[worst])) {
-        worst = v;
-      }
-    }
-    std::vector<bool> next = result.used;
-    for (std::size_t v = 0; v < views.size(); ++v) next[v] = next[v] || used[v];
-    if (worst < views.size()) next[worst] = false;
-    if (next == result.used) break;
-    result.used = next;
-    result.camera_from_body = fit(lens, views, result.used, result.camera_from_body);
+  }
+  return best;
+}
+
+/// Leaves tags out as long as one disagrees and leaving one out helps much. Where the layout is
+/// measured badly all tags disagree a little, and all stay.
+PoseFit without_outliers(const Lens& lens, std::span<const TagView> views,
+                         const PoseOptions& options, PoseFit result, const glm::dmat4& start) {
+  constexpr double kMuchBetter = 0.5;
+  for (std::size_t round = 1; round < views.size(); ++round) {
+    if (worst_of_used(lens, views, result) <= options.outlier_px) break;
+    PoseFit next = fit_without_one(lens, views, result, start);
+    if (rms_of_used(lens, views, next) > kMuchBetter * rms_of_used(lens, views, result)) break;
+    result = std::move(next);
   }
   return result;
+}
+
+bool same_pose(const PoseFit& a, const PoseFit& b) {
+  return a.used == b.used &&
+         rotation_between_rad(a.camera_from_body, b.camera_from_body) < kSameRotation_rad;
 }
 
 void judge(const Lens& lens, std::span<const TagView> views, const PoseOptions& options,
@@ -302,17 +331,22 @@ std::vector<PoseFit> body_poses(const Lens& lens, std::span<const TagView> views
   }
   std::vector<PoseFit> fits;
   if (order.empty()) return fits;
+  std::vector<PoseFit> complete;
+  const auto has = [](const std::vector<PoseFit>& all, const PoseFit& one) {
+    return std::any_of(all.begin(), all.end(), [&](const PoseFit& f) { return same_pose(f, one); });
+  };
   for (const glm::dmat4& seed : seeds) {
-    PoseFit candidate = fit_without_outliers(lens, views, options, seed);
+    PoseFit candidate;
+    candidate.used.assign(views.size(), true);
+    candidate.camera_from_body = fit(lens, views, candidate.used, seed);
+    // Which of two tags stays depends on the start.
+    if (views.size() != 2 && has(complete, candidate)) continue;
+    complete.push_back(candidate);
+    candidate = without_outliers(lens, views, options, std::move(candidate), seed);
     if (!usable(candidate.camera_from_body)) continue;
     judge(lens, views, options, candidate);
     if (candidate.rms_px >= kUnseen_px) continue;
-    const bool known = std::any_of(fits.begin(), fits.end(), [&](const PoseFit& f) {
-      return f.used == candidate.used &&
-             rotation_between_rad(f.camera_from_body, candidate.camera_from_body) <
-                 kSameRotation_rad;
-    });
-    if (!known) fits.push_back(std::move(candidate));
+    if (!has(fits, candidate)) fits.push_back(std::move(candidate));
   }
   std::stable_sort(fits.begin(), fits.end(),
                    [](const PoseFit& a, const PoseFit& b) { return a.chi2 < b.chi2; });

@@ -29,7 +29,8 @@ struct TagView {
 struct PoseOptions {
   /// Standard deviation of a corner's coordinate that judgements assume.
   double corner_noise_px = 0.3;
-  /// A tag whose rms error exceeds both this and three times its fellows' median is left out.
+  /// While a tag's rms error exceeds this, one tag is left out if that halves the error of the
+  /// rest.
   double outlier_px = 3.0;
 };
 

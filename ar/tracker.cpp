@@ -33,13 +33,17 @@ double perimeter(const TagCorners& c) {
   return sum;
 }
 
-/// What is remembered of a body, or of the world.
+/// Smooths what mirrored poses are compared with, whether or not the output is filtered: a single
+/// noisy picture must not carry the memory over to the other side.
+constexpr OneEuroOptions kSettling{.min_cutoff_hz = 2.0, .beta_per_m = 0.0, .beta_per_rad = 0.0};
+
+/// What is remembered of a body (as world_from_body), or of the world (as world_from_camera).
 struct Memory {
   PoseChooser chooser;
   std::optional<PoseFilter> filter;
-  /// camera_from_body as measured, and when.
-  std::optional<glm::dmat4> measured;
-  /// What was given out last: world_from_camera or world_from_body.
+  PoseFilter settling{kSettling};
+  std::optional<glm::dmat4> settled;
+  /// What was given out last.
   std::optional<glm::dmat4> given;
   double seen_s = 0.0;
 };
@@ -149,14 +153,18 @@ std::optional<glm::dmat4> Tracker::Impl::give(Memory& memory, const std::optiona
   const double gap_s = time_s - memory.seen_s;
   const bool recent = memory.given && gap_s >= 0.0 && gap_s <= options.hold_s;
   if (pose) {
-    if (memory.filter && !recent) memory.filter->reset();
+    if (!recent) {
+      if (memory.filter) memory.filter->reset();
+      memory.settling.reset();
+    }
+    memory.settled = memory.settling.filter(*pose, time_s);
     memory.given = memory.filter ? memory.filter->filter(*pose, time_s) : *pose;
     memory.seen_s = time_s;
   } else if (recent) {
     held = true;
   } else {
     memory.given.reset();
-    memory.measured.reset();
+    memory.settled.reset();
     memory.chooser.reset();
   }
   return memory.given;
@@ -173,10 +181,10 @@ TrackResult Tracker::Impl::track(std::vector<Detection> detections, double time_
     world_from_camera_measured = opengl_from_opencv_axes();
     result.world_from_camera = world_from_camera_measured;
   } else {
-    const auto prior = within_hold(world) ? world.measured : std::nullopt;
+    std::optional<glm::dmat4> prior;
+    if (within_hold(world)) prior = rigid_inverse(*world.settled);
     result.world = measure(layout.world, result.detections, world, prior);
     if (result.world.camera_from_body) {
-      world.measured = result.world.camera_from_body;
       world_from_camera_measured = rigid_inverse(*result.world.camera_from_body);
     }
     result.world_from_camera = give(world, world_from_camera_measured, time_s, result.world.held);
@@ -187,17 +195,12 @@ TrackResult Tracker::Impl::track(std::vector<Detection> detections, double time_
     // A body that rests while the camera moves is where it was in the world.
     std::optional<glm::dmat4> prior;
     if (within_hold(memory) && world_from_camera_measured) {
-      prior = rigid_inverse(*world_from_camera_measured) * *memory.given;
-    } else if (within_hold(memory)) {
-      prior = memory.measured;
+      prior = rigid_inverse(*world_from_camera_measured) * *memory.settled;
     }
     BodyTrack track = measure(layout.bodies[i], result.detections, memory, prior);
     std::optional<glm::dmat4> world_from_body;
-    if (track.camera_from_body) {
-      memory.measured = track.camera_from_body;
-      if (world_from_camera_measured) {
-        world_from_body = *world_from_camera_measured * *track.camera_from_body;
-      }
+    if (track.camera_from_body && world_from_camera_measured) {
+      world_from_body = *world_from_camera_measured * *track.camera_from_body;
     }
     track.world_from_body = give(memory, world_from_body, time_s, track.held);
     result.bodies.push_back(std::move(track));
