@@ -155,7 +155,7 @@ std::array<bool, 4> random_write(Random& r) {
 
 Clear random_clear(Random& r, int width, int height) {
   Clear clear;
-  if (r.chance(0.5f)) clear.color = glm::vec4(random_vec3(r, -0.1f, 1.1f), r.real(0.0f, 1.0f));
+  if (r.chance(0.5f)) clear.color = glm::vec4{random_vec3(r, -0.1f, 1.1f), r.real(0.0f, 1.0f)};
   if (r.chance(0.5f)) clear.depth = r.real(-0.1f, 1.1f);
   if (r.chance(0.5f)) clear.stencil = r.integer(-3, 300);
   clear.color_write = random_write(r);
