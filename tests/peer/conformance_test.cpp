@@ -30,7 +30,8 @@ struct GridMesh {
 struct GridOptions {
   /// Vertices reach this far outside the target.
   int margin_px = 0;
-  bool sloped = true;
+  /// Slopes and polygon offset too. Without them depths lie on a few levels, far apart.
+  bool depth_varies = true;
 };
 
 /// In 1/256 pixel. Coarser grids bring edges through pixel centres and shared edges.
@@ -90,9 +91,8 @@ void add_sloped_triangle(random_frames::Random& random, GridMesh& mesh) {
   add_vertex(random, mesh, center(x), center(y + leg_y), depth + leg_y * slope_y);
 }
 
-/// A frame of grid-aligned draws in random states; polygon offset, viewport and depth
-/// range aside (their floats are Mesa's own), whatever a state can have.
-/// A pass a draw.
+/// A frame of grid-aligned draws in random states, a pass a draw. Of polygon offset whole units
+/// only; viewport, depth range and blending are left at their defaults.
 Frame grid_frame(std::uint32_t seed, random_frames::Targets& targets,
                  const GridOptions& options = {}) {
   random_frames::Random random(seed);
@@ -104,7 +104,7 @@ Frame grid_frame(std::uint32_t seed, random_frames::Targets& targets,
   for (int d = 0; d < kDrawsAFrame; ++d) {
     auto mesh = std::make_shared<GridMesh>();
     for (int t = 0; t < kTrianglesADraw; ++t) {
-      if (!options.sloped || random.chance(0.7f))
+      if (!options.depth_varies || random.chance(0.7f))
         add_level_triangle(random, *mesh, options.margin_px);
       else
         add_sloped_triangle(random, *mesh);
@@ -112,7 +112,9 @@ Frame grid_frame(std::uint32_t seed, random_frames::Targets& targets,
     frame.keep(mesh);
     Draw draw;
     draw.state = random_frames::random_state(random, kSize, kSize);
-    draw.state.polygon_offset.reset();
+    if (!options.depth_varies) draw.state.polygon_offset.reset();
+    if (draw.state.polygon_offset)
+      draw.state.polygon_offset = PolygonOffset{0.0f, static_cast<float>(random.integer(-99, 99))};
     draw.state.viewport.reset();
     draw.state.depth_range = {};
     draw.state.color.blend.reset();
@@ -168,7 +170,7 @@ TEST(Conformance, TrianglesThatReachOutsideDifferOnlyAtEdgesThatOpenGLHasCut) {
   peer::StencilCauses all;
   for (std::uint32_t seed = 0; seed < kFrames; ++seed) {
     random_frames::Targets targets(kSize, kSize, ColorFormat::rgba8, DepthFormat::d24);
-    const Frame frame = grid_frame(seed, targets, {.margin_px = 16, .sloped = false});
+    const Frame frame = grid_frame(seed, targets, {.margin_px = 16, .depth_varies = false});
     peer::Buffers before = own(targets), before_gl = before;
     for (std::size_t i = 0; i < frame.passes().size(); ++i) {
       execute(frame, {.threads = 1, .first_command = i, .commands = i + 1});
