@@ -48,6 +48,29 @@ struct Memory {
   double seen_s = 0.0;
 };
 
+/// The detection of this tag: of several, the one nearest to where `prior` puts it, else the
+/// largest.
+const Detection* find(const std::vector<Detection>& detections, const PlacedTag& tag,
+                      const Lens& lens, const std::optional<glm::dmat4>& prior) {
+  const Detection* best = nullptr;
+  double best_score = 0.0;
+  for (const Detection& d : detections) {
+    if (d.id != tag.id) continue;
+    double score = perimeter(d.corners_px);
+    if (prior) {
+      const glm::dvec4 centre = *prior * tag.body_from_tag[3];
+      const auto pixel = lens.project(glm::dvec3(centre));
+      const glm::dvec2 seen = 0.5 * (d.corners_px[0] + d.corners_px[2]);
+      if (pixel) score = -glm::distance(*pixel, seen);
+    }
+    if (best == nullptr || score > best_score) {
+      best = &d;
+      best_score = score;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 struct Tracker::Impl {
@@ -93,29 +116,6 @@ const Lens& Tracker::Impl::lens_for(const Image& picture) {
     lens.emplace(camera_for_picture(camera, picture.width, picture.height));
   }
   return *lens;
-}
-
-/// The detection of this tag: of several, the one nearest to where `prior` puts it, else the
-/// largest.
-const Detection* find(const std::vector<Detection>& detections, const PlacedTag& tag,
-                      const Lens& lens, const std::optional<glm::dmat4>& prior) {
-  const Detection* best = nullptr;
-  double best_score = 0.0;
-  for (const Detection& d : detections) {
-    if (d.id != tag.id) continue;
-    double score = perimeter(d.corners_px);
-    if (prior) {
-      const glm::dvec4 centre = *prior * tag.body_from_tag[3];
-      const auto pixel = lens.project(glm::dvec3(centre));
-      const glm::dvec2 seen = 0.5 * (d.corners_px[0] + d.corners_px[2]);
-      if (pixel) score = -glm::distance(*pixel, seen);
-    }
-    if (best == nullptr || score > best_score) {
-      best = &d;
-      best_score = score;
-    }
-  }
-  return best;
 }
 
 BodyTrack Tracker::Impl::measure(const TaggedBody& body, const std::vector<Detection>& detections,
