@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "raster/clip.h"
 #include "raster/unorm.h"
@@ -109,6 +110,13 @@ bool set_up(const DrawSetup& setup, std::array<ProjectedVertex, 3> v, std::uint3
   return true;
 }
 
+bool before(const ProjectedVertex& a, const ProjectedVertex& b) {
+  const auto key = [](const ProjectedVertex& v) {
+    return std::tuple(v.snapped.x_fx, v.snapped.y_fx, v.snapped.z_fx);
+  };
+  return key(a) < key(b);
+}
+
 bool finite(const glm::vec4& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
 }
@@ -179,10 +187,16 @@ void set_up_triangles(const DrawSetup& setup, std::span<const glm::vec4> clip, s
       continue;
     }
     const ClippedPolygon polygon = clip_triangle(p, volume);
+    const auto corners = static_cast<std::size_t>(polygon.count);
     std::array<ProjectedVertex, 10> v;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.count); ++i)
+    for (std::size_t i = 0; i < corners; ++i)
       v[i] = project(polygon.vertices[i].position, polygon.vertices[i].weights, setup);
-    for (std::size_t i = 2; i < static_cast<std::size_t>(polygon.count); ++i)
+    // The fan starts at one and the same vertex however the triangle was given, so its pieces, and
+    // with them its depth bits, do not depend on the order of its vertices or on its winding.
+    if (corners > 3)
+      std::rotate(v.begin(), std::min_element(v.begin(), v.begin() + corners, before),
+                  v.begin() + corners);
+    for (std::size_t i = 2; i < corners; ++i)
       if (set_up(setup, {v[0], v[i - 1], v[i]}, first_index, triangle)) out.push_back(triangle);
   }
 }

@@ -294,3 +294,30 @@ TEST(Frame, MisuseNamesTheRule) {
   EXPECT_THROW(ColorBuffer(0, 5), std::invalid_argument);
   EXPECT_THROW(depth.at(3, 0), std::invalid_argument);
 }
+
+TEST(Depth, OfAClippedTriangleDoesNotDependOnTheOrderOfItsVertices) {
+  Random random(41);
+  int drawn = 0;
+  for (int round = 0; round < 200; ++round) {
+    std::array<glm::vec4, 3> v;
+    for (glm::vec4& p : v) {
+      const float x = random.real(-3.0f, 3.0f), y = random.real(-3.0f, 3.0f);
+      p = {x, y, random.real(-2.0f, 2.0f), random.real(-1.0f, 2.0f)};
+    }
+    std::vector<std::uint32_t> first;
+    for (const std::array<int, 3>& order :
+         {std::array{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}) {
+      DepthBuffer depth(60, 50);
+      Frame frame;
+      frame.begin_pass("triangle", {.depth = &depth});
+      const auto at = [&](std::size_t i) { return v[static_cast<std::size_t>(order[i])]; };
+      draw_positions(frame, {.depth = DepthState{CompareFunc::always, true}},
+                     {at(0), at(1), at(2)});
+      execute(frame);
+      if (first.empty()) first = depth.to_rows();
+      ASSERT_EQ(depth.to_rows(), first) << "round " << round;
+    }
+    drawn += first != DepthBuffer(60, 50).to_rows();
+  }
+  EXPECT_GT(drawn, 50);
+}

@@ -221,6 +221,18 @@ glm::vec4 transform(const glm::mat4& m, const glm::vec4& p) {
   return out;
 }
 
+/// Turns the polygon so that it starts at the vertex with the least (x, y, depth).
+void start_at_lowest(std::vector<Vertex>& polygon) {
+  std::size_t lowest = 0;
+  for (std::size_t i = 1; i < polygon.size(); ++i) {
+    const Vertex &a = polygon[i], &b = polygon[lowest];
+    const bool lower = a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    if (lower) lowest = i;
+  }
+  std::rotate(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(lowest),
+              polygon.end());
+}
+
 void run(const Draw& draw, const Target& target) {
   const Rect viewport = draw.state.viewport.value_or(Rect{0, 0, target.width, target.height});
   const DepthFormat format =
@@ -235,6 +247,7 @@ void run(const Draw& draw, const Target& target) {
     if (!finite) continue;
     std::vector<Vertex> polygon = clip(p, viewport, draw.state.depth_clamp);
     for (Vertex& v : polygon) project(v, viewport, draw.state, format);
+    if (polygon.size() > 3) start_at_lowest(polygon);
     for (std::size_t k = 2; k < polygon.size(); ++k)
       draw_triangle(draw, target, {polygon[0], polygon[k - 1], polygon[k]}, i);
   }
