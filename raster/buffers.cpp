@@ -40,9 +40,7 @@ ColorBuffer::ColorBuffer(int width, int height, ColorFormat format)
 
 glm::vec4 ColorBuffer::at(int x, int y) const {
   if (format_ == ColorFormat::rgba32f) return rgba32f().at(x, y);
-  const Rgba8 c = rgba8().at(x, y);
-  return {unorm8_to_float(c[0]), unorm8_to_float(c[1]), unorm8_to_float(c[2]),
-          unorm8_to_float(c[3])};
+  return to_floats(rgba8().at(x, y));
 }
 
 TiledPlane<Rgba8>& ColorBuffer::rgba8() {

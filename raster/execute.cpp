@@ -24,11 +24,7 @@ struct Size {
   int tiles_y() const { return (height + kTileSize - 1) / kTileSize; }
 };
 
-Size size_of(const Targets& t) {
-  if (t.color) return {t.color->width(), t.color->height()};
-  if (t.depth) return {t.depth->width(), t.depth->height()};
-  return {t.stencil->width(), t.stencil->height()};
-}
+Size size_of(const Targets& targets) { return {targets.width(), targets.height()}; }
 
 /// A command with its pass's targets; for a draw also its set-up triangles and, a tile, the numbers
 /// of those that touch it.

@@ -1,10 +1,21 @@
 #include "raster/frame.h"
 
+#include <limits>
+
 #include "raster/check.h"
 
 namespace gnomon::raster {
 
 namespace {
+
+/// The first buffer's dimension that `of` reads.
+template <class Of>
+int dimension(const Targets& targets, Of of) {
+  if (targets.color) return of(*targets.color);
+  if (targets.depth) return of(*targets.depth);
+  require(targets.stencil != nullptr, "a pass has a target");
+  return of(*targets.stencil);
+}
 
 template <class Buffer>
 void require_size(const Buffer* buffer, int width, int height) {
@@ -24,6 +35,8 @@ void require_texture(const std::shared_ptr<const Texture>& texture, const MeshVi
 void require_mesh(const MeshView& mesh) {
   const std::size_t count = mesh.positions.size();
   require(mesh.indices.size() % 3 == 0, "a mesh has three indices a triangle");
+  require(mesh.indices.size() <= std::numeric_limits<std::uint32_t>::max(),
+          "a mesh has fewer than 2^32 indices");
   require(mesh.normals.empty() || mesh.normals.size() == count, "normals are one a position");
   require(mesh.colors.empty() || mesh.colors.size() == count, "colours are one a position");
   require(mesh.texcoords.empty() || mesh.texcoords.size() == count,
@@ -43,14 +56,16 @@ void require_viewport(const std::optional<Rect>& viewport) {
 
 }  // namespace
 
+int Targets::width() const {
+  return dimension(*this, [](const auto& buffer) { return buffer.width(); });
+}
+
+int Targets::height() const {
+  return dimension(*this, [](const auto& buffer) { return buffer.height(); });
+}
+
 void Frame::begin_pass(std::string_view label, const Targets& targets) {
-  require(targets.color || targets.depth || targets.stencil, "a pass has a target");
-  const int width = targets.color   ? targets.color->width()
-                    : targets.depth ? targets.depth->width()
-                                    : targets.stencil->width();
-  const int height = targets.color   ? targets.color->height()
-                     : targets.depth ? targets.depth->height()
-                                     : targets.stencil->height();
+  const int width = targets.width(), height = targets.height();
   require_size(targets.color, width, height);
   require_size(targets.depth, width, height);
   require_size(targets.stencil, width, height);

@@ -31,6 +31,10 @@ struct Targets {
   DepthBuffer* depth = nullptr;
   StencilBuffer* stencil = nullptr;
   bool operator==(const Targets&) const = default;
+
+  /// The buffers' common size in pixels. Misuse: no buffer at all.
+  int width() const;
+  int height() const;
 };
 
 /// Sets what is named to a value, inside the scissor and under the masks (glClear).

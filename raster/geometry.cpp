@@ -139,12 +139,7 @@ PixelBox scissor_box(const std::optional<Rect>& scissor, int width, int height) 
 }
 
 DrawSetup make_draw_setup(const Draw& draw, const Targets& targets) {
-  const int width = targets.color   ? targets.color->width()
-                    : targets.depth ? targets.depth->width()
-                                    : targets.stencil->width();
-  const int height = targets.color   ? targets.color->height()
-                     : targets.depth ? targets.depth->height()
-                                     : targets.stencil->height();
+  const int width = targets.width(), height = targets.height();
   DrawSetup setup;
   setup.draw = &draw;
   setup.depth_format = targets.depth ? targets.depth->format() : DepthFormat::d24;

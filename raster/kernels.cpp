@@ -8,12 +8,6 @@ namespace gnomon::raster {
 
 namespace {
 
-/// Calls body(i) for each pixel of the mask, lowest bit first.
-template <class Body>
-void for_each_pixel(PixelMask mask, Body body) {
-  for (; mask; mask &= mask - 1) body(__builtin_ctzll(mask));
-}
-
 /// Bit i of the result is predicate(i). Full rows of a block at a time keep the loop vectorizable.
 template <class Predicate>
 PixelMask gather_mask(Predicate predicate) {
@@ -72,7 +66,7 @@ void depth_values(const BlockDepth& plane, std::uint32_t (&out)[kPixelsPerBlock]
 void update_stencil(StencilOp op, PixelMask mask, std::uint8_t ref, std::uint8_t write_mask,
                     std::uint8_t* stencil) {
   if (op == StencilOp::keep || write_mask == 0) return;
-  for_each_pixel(mask, [&](int i) {
+  for_each_pixel(mask, [&](std::size_t i) {
     const std::uint8_t old = stencil[i];
     stencil[i] =
         static_cast<std::uint8_t>((old & ~write_mask) | (apply(op, old, ref) & write_mask));
@@ -108,7 +102,7 @@ PixelMask test_block(const FragmentTests& tests, PixelMask covered, const BlockD
     depth_values(plane, z);
     pass &= compare_mask(
         tests.depth_func, [&](int i) { return z[i]; }, [&](int i) { return depth[i]; });
-    if (tests.depth_write) for_each_pixel(pass, [&](int i) { depth[i] = z[i]; });
+    if (tests.depth_write) for_each_pixel(pass, [&](std::size_t i) { depth[i] = z[i]; });
   }
   if (tests.stencil_test) {
     update_stencil(face.depth_fail, stencil_pass & ~pass, tests.stencil_ref, face.write_mask,

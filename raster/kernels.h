@@ -3,6 +3,7 @@
 // block-linear (raster/tiled_plane.h). Kernels cannot fail.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "raster/state.h"
@@ -11,6 +12,12 @@ namespace gnomon::raster {
 
 using PixelMask = std::uint64_t;
 inline constexpr PixelMask kAllPixels = ~PixelMask{0};
+
+/// Calls body(i) for each pixel of the mask, lowest bit first.
+template <class Body>
+void for_each_pixel(PixelMask mask, Body body) {
+  for (; mask; mask &= mask - 1) body(static_cast<std::size_t>(__builtin_ctzll(mask)));
+}
 
 /// The three edges of a triangle at a block's first pixel centre: value - bias over 256, rounded
 /// down. A pixel's step is then the edge's a or b itself, and the sign is exact, because all pixel

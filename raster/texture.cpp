@@ -19,9 +19,7 @@ int wrap_index(std::int64_t i, int size, Wrap wrap) {
 glm::vec4 texel(const Texture& texture, std::int64_t i, std::int64_t j) {
   const int x = wrap_index(i, texture.width, texture.wrap_s);
   const int y = wrap_index(j, texture.height, texture.wrap_t);
-  const Rgba8& c = texture.texels[static_cast<std::size_t>(y) * texture.width + x];
-  return {unorm8_to_float(c[0]), unorm8_to_float(c[1]), unorm8_to_float(c[2]),
-          unorm8_to_float(c[3])};
+  return to_floats(texture.texels[static_cast<std::size_t>(y) * texture.width + x]);
 }
 
 /// A texel coordinate whose integer part is safe to convert.

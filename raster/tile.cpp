@@ -48,11 +48,6 @@ void for_each_block(const PixelBox& box, TileIndex tile, Body body) {
     }
 }
 
-template <class Body>
-void for_each_pixel(PixelMask mask, Body body) {
-  for (; mask; mask &= mask - 1) body(static_cast<std::size_t>(__builtin_ctzll(mask)));
-}
-
 void write_color(ColorBuffer& target, TileIndex tile, std::size_t offset, const ColorState& state,
                  const glm::vec4& color) {
   if (target.format() == ColorFormat::rgba8) {
@@ -62,11 +57,6 @@ void write_color(ColorBuffer& target, TileIndex tile, std::size_t offset, const 
     glm::vec4& stored = target.rgba32f().tile(tile.x, tile.y)[offset];
     stored = blend_rgba32f(state, color, stored);
   }
-}
-
-glm::vec4 to_floats(const Rgba8& c) {
-  return {unorm8_to_float(c[0]), unorm8_to_float(c[1]), unorm8_to_float(c[2]),
-          unorm8_to_float(c[3])};
 }
 
 void store_masked(const Rgba8& source, const std::array<bool, 4>& write, Rgba8& stored) {
@@ -141,12 +131,6 @@ BlockDepth depth_at_tile(const DrawSetup& setup, const DepthPlane& plane, TileIn
 }  // namespace
 
 void clear_tile(const Clear& clear, const Targets& targets, TileIndex tile) noexcept {
-  const int width = targets.color   ? targets.color->width()
-                    : targets.depth ? targets.depth->width()
-                                    : targets.stencil->width();
-  const int height = targets.color   ? targets.color->height()
-                     : targets.depth ? targets.depth->height()
-                                     : targets.stencil->height();
   const ColorState color_state{clear.color_write, {}};
   const bool color = clear.color && any(clear.color_write);
   const bool depth = clear.depth && clear.depth_write;
@@ -154,7 +138,7 @@ void clear_tile(const Clear& clear, const Targets& targets, TileIndex tile) noex
       depth ? float_to_depth(*clear.depth, targets.depth->format()) : 0;
   const std::uint8_t stencil_mask = clear.stencil_write_mask;
   for_each_block(
-      scissor_box(clear.scissor, width, height), tile,
+      scissor_box(clear.scissor, targets.width(), targets.height()), tile,
       [&](int, int, std::size_t offset, PixelMask mask) {
         for_each_pixel(mask, [&](std::size_t i) {
           if (color) write_color(*targets.color, tile, offset + i, color_state, *clear.color);

@@ -27,6 +27,11 @@ inline Rgba8 to_rgba8(const glm::vec4& c) {
   return {float_to_unorm8(c.r), float_to_unorm8(c.g), float_to_unorm8(c.b), float_to_unorm8(c.a)};
 }
 
+inline glm::vec4 to_floats(const Rgba8& c) {
+  return {unorm8_to_float(c[0]), unorm8_to_float(c[1]), unorm8_to_float(c[2]),
+          unorm8_to_float(c[3])};
+}
+
 /// The integer that stands for depth 1.0.
 inline std::uint32_t max_depth(DepthFormat format) {
   return format == DepthFormat::d24 ? 0xffffffu : 0xffffu;
