@@ -1,5 +1,7 @@
 #include "raster/clip.h"
 
+#include <algorithm>
+
 namespace gnomon::raster {
 
 namespace {
@@ -34,8 +36,11 @@ bool skipped(int plane, const ClipVolume& volume) {
 ClipVertex cut(const ClipVertex& inner, double inner_distance, const ClipVertex& outer,
                double outer_distance) {
   const double t = inner_distance / (inner_distance - outer_distance);
-  return {inner.position + (outer.position - inner.position) * t,
-          inner.weights + (outer.weights - inner.weights) * t};
+  ClipVertex vertex{inner.position + (outer.position - inner.position) * t,
+                    inner.weights + (outer.weights - inner.weights) * t};
+  // Where one end's w is 2^50 times the other's, the difference rounds the small one away.
+  vertex.position.w = std::max(vertex.position.w, kMinW);
+  return vertex;
 }
 
 ClippedPolygon clip_plane(const ClippedPolygon& in, int plane, const ClipVolume& volume) {
@@ -45,8 +50,13 @@ ClippedPolygon clip_plane(const ClippedPolygon& in, int plane, const ClipVolume&
     const ClipVertex& b = in.vertices[static_cast<std::size_t>((i + 1) % in.count)];
     const double da = distance(a.position, plane, volume);
     const double db = distance(b.position, plane, volume);
+    // A convex polygon has room for every plane; one that rounding has bent may cross a plane more
+    // than twice, and what has no room then is smaller than that rounding.
     const auto emit = [&out](const ClipVertex& v) {
-      out.vertices[static_cast<std::size_t>(out.count++)] = v;
+      const auto slot = static_cast<std::size_t>(out.count);
+      if (slot == out.vertices.size()) return;
+      out.vertices[slot] = v;
+      ++out.count;
     };
     if (da >= 0.0) emit(a);
     if (da >= 0.0 && db < 0.0) emit(cut(a, da, b, db));

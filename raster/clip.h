@@ -12,8 +12,8 @@
 
 namespace gnomon::raster {
 
-/// Smallest w of a clipped vertex: what is nearer to the eye plane is cut off, with depth clamp
-/// too.
+/// Smallest w of a clipped vertex, rounding included: what is nearer to the eye plane is cut off,
+/// with depth clamp too.
 inline constexpr double kMinW = 1.0 / (1 << 24);
 
 struct ClipVertex {

@@ -24,8 +24,8 @@ struct ProjectedVertex {
 };
 
 std::int32_t snap(double window) {
-  const std::int64_t fx = round_to_nearest(window * 256.0);
-  return static_cast<std::int32_t>(std::clamp(fx, -kMaxCoordinate, kMaxCoordinate));
+  constexpr auto kLimit = static_cast<double>(kMaxCoordinate);
+  return static_cast<std::int32_t>(round_to_nearest(std::clamp(window * 256.0, -kLimit, kLimit)));
 }
 
 std::int64_t snap_depth(double depth, const DrawSetup& setup) {

@@ -205,11 +205,10 @@ State random_state(Random& r, int width, int height) {
   return state;
 }
 
-Frame random_frame(std::uint32_t seed, int commands, Targets& targets) {
+void record_pass(Frame& frame, std::uint32_t seed, int commands, const raster::Targets& targets) {
   Random r(seed);
-  const int width = targets.depth.width(), height = targets.depth.height();
-  Frame frame;
-  frame.begin_pass("random", targets.all());
+  const int width = targets.width(), height = targets.height();
+  frame.begin_pass("random", targets);
   for (int i = 0; i < commands; ++i) {
     if (r.chance(0.1f)) {
       frame.clear(random_clear(r, width, height));
@@ -235,6 +234,11 @@ Frame random_frame(std::uint32_t seed, int commands, Targets& targets) {
       frame.draw(draw);
     }
   }
+}
+
+Frame random_frame(std::uint32_t seed, int commands, Targets& targets) {
+  Frame frame;
+  record_pass(frame, seed, commands, targets.all());
   return frame;
 }
 

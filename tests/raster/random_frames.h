@@ -45,7 +45,11 @@ struct Targets {
   std::vector<std::uint8_t> bytes() const;
 };
 
-/// Records `commands` random commands of this seed into a frame for these targets.
+/// Records a pass of `commands` random commands of this seed; all three targets are there.
+void record_pass(raster::Frame& frame, std::uint32_t seed, int commands,
+                 const raster::Targets& targets);
+
+/// A frame of one such pass.
 raster::Frame random_frame(std::uint32_t seed, int commands, Targets& targets);
 
 /// A random fixed-function state.

@@ -74,6 +74,7 @@ std::vector<Vertex> clip(const std::array<glm::vec4, 3>& triangle, const Rect& v
       const double t = d_in / (d_in - d_out);
       Vertex crossing;
       crossing.clip = in.clip + (out.clip - in.clip) * t;
+      crossing.clip.w = std::max(crossing.clip.w, kSmallestW);
       crossing.weights = in.weights + (out.weights - in.weights) * t;
       kept.push_back(crossing);
     }
