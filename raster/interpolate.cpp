@@ -23,6 +23,20 @@ T weighted(std::span<const T> values, const std::uint32_t* index, const glm::vec
   return (values[index[0]] * p.x + values[index[1]] * p.y) + values[index[2]] * p.z;
 }
 
+glm::vec3 world_normal(const glm::mat3& m, const glm::vec3& n) {
+  glm::vec3 out;
+  for (int row = 0; row < 3; ++row)
+    out[row] = (m[0][row] * n.x + m[1][row] * n.y) + m[2][row] * n.z;
+  return out;
+}
+
+glm::vec3 world_position(const glm::mat4& m, const glm::vec4& p) {
+  glm::vec3 out;
+  for (int row = 0; row < 3; ++row)
+    out[row] = (m[0][row] * p.x + m[1][row] * p.y) + (m[2][row] * p.z + m[3][row] * p.w);
+  return out;
+}
+
 }  // namespace
 
 Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, int x, int y) noexcept {
@@ -37,8 +51,8 @@ Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, int x, int
   if (!mesh.colors.empty()) fragment.color = weighted(mesh.colors, index, p);
   if (!mesh.texcoords.empty()) fragment.texcoord = weighted(mesh.texcoords, index, p);
   if (lit) {
-    fragment.normal = lit->world_from_model_normal * weighted(mesh.normals, index, p);
-    fragment.world = glm::vec3(lit->world_from_model * weighted(mesh.positions, index, p));
+    fragment.normal = world_normal(lit->world_from_model_normal, weighted(mesh.normals, index, p));
+    fragment.world = world_position(lit->world_from_model, weighted(mesh.positions, index, p));
   }
   return fragment;
 }

@@ -207,8 +207,15 @@ Fragment interpolate(const Draw& draw, const std::uint32_t* index, const glm::ve
   if (!draw.mesh.colors.empty()) fragment.color = mix(draw.mesh.colors);
   if (!draw.mesh.texcoords.empty()) fragment.texcoord = mix(draw.mesh.texcoords);
   if (const Lit* lit = std::get_if<Lit>(&draw.shading)) {
-    fragment.normal = lit->world_from_model_normal * mix(draw.mesh.normals);
-    fragment.world = glm::vec3(lit->world_from_model * mix(draw.mesh.positions));
+    const glm::vec3 n = mix(draw.mesh.normals);
+    const glm::vec4 p = mix(draw.mesh.positions);
+    const glm::mat3& a = lit->world_from_model_normal;
+    const glm::mat4& b = lit->world_from_model;
+    for (int row = 0; row < 3; ++row) {
+      fragment.normal[row] = (a[0][row] * n.x + a[1][row] * n.y) + a[2][row] * n.z;
+      fragment.world[row] =
+          (b[0][row] * p.x + b[1][row] * p.y) + (b[2][row] * p.z + b[3][row] * p.w);
+    }
   }
   return fragment;
 }
