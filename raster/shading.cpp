@@ -1,5 +1,6 @@
 #include "raster/shading.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gnomon::raster {
@@ -42,8 +43,11 @@ void add_light(const Light& light, const Lit& lit, const glm::vec3& normal, cons
   to_light = normalized(to_light);
   if (light.spot_cos_cutoff > -1.0f) {
     const float cosine = -dot3(to_light, light.spot_direction);
-    strength =
-        cosine < light.spot_cos_cutoff ? 0.0f : strength * power(cosine, light.spot_exponent);
+    // A cone wider than a half space has negative cosines in it; they count as 0, as in
+    // OpenGL's product of two vectors.
+    strength = cosine < light.spot_cos_cutoff
+                   ? 0.0f
+                   : strength * power(std::max(cosine, 0.0f), light.spot_exponent);
   }
   sum.ambient = sum.ambient + light.ambient * strength;
   const float n_dot_l = dot3(normal, to_light);

@@ -86,6 +86,20 @@ TEST(Shading, ASpotEndsAtItsCone) {
   EXPECT_EQ(shade(lit, fragment).r, 0.0f);
 }
 
+TEST(Shading, ASpotWiderThanAHalfSpaceTakesNoLightAway) {
+  Lit lit;
+  Light light;
+  light.position = {0.0f, 0.0f, 1.0f, 1.0f};
+  light.spot_direction = {0.0f, 0.0f, 1.0f};
+  light.spot_cos_cutoff = -0.9f;
+  light.spot_exponent = 1;
+  lit.lights = {light};
+  Fragment fragment;
+  fragment.normal = {0.0f, 0.0f, 1.0f};
+  fragment.world = {1.0f, 0.0f, 0.0f};  // cosine -0.707
+  EXPECT_EQ(shade(lit, fragment).r, 0.0f);
+}
+
 TEST(Texture, LinearFilterMixesFourTexels) {
   Texture texture = checker();
   texture.wrap_s = texture.wrap_t = Wrap::clamp_to_edge;
