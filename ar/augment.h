@@ -25,6 +25,7 @@ struct AugmentOptions {
   int samples = 0;
   /// 0: as many as the machine has.
   int threads = 0;
+  /// Distances along the camera's axis that depth resolves; nothing is cut off there.
   double near_m = 0.02, far_m = 100.0;
   /// Also make the masks and the picture of counts.
   bool masks = true;
@@ -66,8 +67,9 @@ class Augmenter {
 
   const PinholeView& view() const;
 
-  /// Preconditions: three channels, the camera's size; `several_lights` scenes are drawn in
-  /// RGBA32F, one light in RGBA8 as in the paper.
+  /// One light is drawn in RGBA8 as in the paper; several, and a light of several points, in
+  /// RGBA32F, since each part would be rounded. `world_from_camera` has OpenCV's axes.
+  /// Preconditions: three channels, the camera's size; a pose that can be inverted.
   Augmented augment(const Image& photograph, const pipeline::Scene& scene,
                     const glm::dmat4& world_from_camera);
 

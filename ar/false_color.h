@@ -16,8 +16,8 @@ namespace gnomon::ar {
 std::array<std::uint8_t, 3> stencil_color(std::uint8_t value);
 
 /// Stencil values (rows from the top) in false colour, with a legend at the right: each value that
-/// occurs, what it means as a signed count, and how many pixels have it. Three channels, wider than
-/// the input.
+/// occurs (the smallest, where the picture's height has no room for all), what it means as a signed
+/// count, and how many pixels have it. Three channels, wider than the input.
 Image stencil_picture(int width, int height, const std::vector<std::uint8_t>& stencil);
 
 /// Depth (rows from the top) as grey: the nearest value that occurs is white, the farthest dark,
