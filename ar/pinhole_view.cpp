@@ -90,7 +90,9 @@ void PinholeView::build_maps(const Lens& lens) {
       if (identity_)
         at = {static_cast<float>(x), static_cast<float>(y)};
       else if (const std::optional<glm::dvec2> n = lens.undistort({x, y}))
-        at = glm::vec2(*n * focal_ + center_);
+        if (const glm::dvec2 p = *n * focal_ + center_;
+            p.x >= -1.0 && p.y >= -1.0 && p.x <= width_ && p.y <= height_)
+          at = glm::vec2(p);
     }
   if (identity_) return;
   const CameraModel& camera = lens.camera();

@@ -18,11 +18,11 @@ namespace gnomon::ar {
 
 class PinholeView {
  public:
-  /// samples: 1 to 8, or 0 for what the lens needs: 1 without distortion, 4 with it (a photograph's
-  /// pixel is then looked up within an eighth of a pixel). Reduced so far that the view stays
-  /// within the rasterizer's largest target. Precondition: the lens's camera has a size. Errors:
-  /// InputError when the lens images no pixel of the photograph, or so wide a field that no pinhole
-  /// picture can hold it.
+  /// samples: 1 to 8, or 0 for what the lens needs: 2 without distortion (smooth edges), 4 with it
+  /// (a photograph's pixel is then looked up within an eighth of a pixel). Reduced so far that the
+  /// view stays within the rasterizer's largest target. Precondition: the lens's camera has a size.
+  /// Errors: InputError when the lens images no pixel of the photograph, or so wide a field that no
+  /// pinhole picture can hold it.
   PinholeView(const Lens& lens, int samples);
 
   int width() const { return width_; }
@@ -38,7 +38,8 @@ class PinholeView {
   pipeline::Camera camera(const glm::dmat4& world_from_camera, double near_m, double far_m) const;
 
   /// Where a photograph's pixel centre lies in the view, in pixels from the top left pixel's
-  /// centre; NaN where the lens images nothing.
+  /// centre; NaN where the lens images nothing. What is not NaN lies in the view or at most a pixel
+  /// beside it.
   glm::vec2 view_from_photo(int x, int y) const {
     return view_from_photo_[static_cast<std::size_t>(y) * photo_width_ + x];
   }
