@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "pipeline/basis.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -16,19 +17,6 @@ namespace {
 // the same on every machine.
 constexpr double kGoldenCos = -0.73736887807831963;
 constexpr double kGoldenSin = 0.67549029426152362;
-
-struct Disc {
-  glm::dvec3 u, v;
-};
-
-Disc disc_across(const glm::dvec3& axis) {
-  const glm::dvec3 size = glm::abs(axis);
-  const glm::dvec3 helper = size.x <= size.y && size.x <= size.z ? glm::dvec3(1.0, 0.0, 0.0)
-                            : size.y <= size.z                   ? glm::dvec3(0.0, 1.0, 0.0)
-                                                                 : glm::dvec3(0.0, 0.0, 1.0);
-  const glm::dvec3 u = glm::normalize(glm::cross(axis, helper));
-  return {u, glm::normalize(glm::cross(axis, u))};
-}
 
 glm::vec3 middle_of(const Scene& scene) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -66,7 +54,7 @@ std::vector<Light> sample_light(const Light& light, const glm::vec3& facing) {
   const glm::dvec3 towards = directional ? position : glm::dvec3(facing) - position;
   const double distance = glm::length(towards);
   // A light in the very middle of the scene has no side that it shows.
-  const Disc disc = disc_across(distance > 0.0 ? towards / distance : glm::dvec3(0.0, -1.0, 0.0));
+  const Basis disc = basis_about(distance > 0.0 ? towards / distance : glm::dvec3(0.0, -1.0, 0.0));
   const double scale = directional ? distance : 1.0;
   const int n = light.samples;
   double x = 1.0, y = 0.0;

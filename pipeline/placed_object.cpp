@@ -12,6 +12,10 @@ namespace {
 
 /// The mesh with a vertex of its own for every corner and the triangle's normal at all three.
 std::shared_ptr<const Mesh> flat_shaded(const Mesh& mesh) {
+  raster::require(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size(),
+                  "colours are one a position");
+  raster::require(mesh.texcoords.empty() || mesh.texcoords.size() == mesh.positions.size(),
+                  "texture coordinates are one a position");
   auto flat = std::make_shared<Mesh>();
   const std::size_t corners = mesh.indices.size();
   flat->positions.reserve(corners);

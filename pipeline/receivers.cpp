@@ -22,6 +22,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "pipeline/basis.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -32,28 +33,6 @@ constexpr double kWiden = 1e-6;
 /// is "touched" by it.
 constexpr double kTooNear = 1e-3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct Basis {
-  glm::dvec3 u, v, axis;
-  glm::dvec3 operator()(const glm::dvec3& p) const {
-    return {glm::dot(u, p), glm::dot(v, p), glm::dot(axis, p)};
-  }
-};
-
-/// A right-angled basis about a unit axis.
-Basis basis_about(const glm::dvec3& axis) {
-  const glm::dvec3 size = glm::abs(axis);
-  glm::dvec3 helper(0.0);
-  if (size.x <= size.y && size.x <= size.z) {
-    helper.x = 1.0;
-  } else if (size.y <= size.z) {
-    helper.y = 1.0;
-  } else {
-    helper.z = 1.0;
-  }
-  const glm::dvec3 u = glm::normalize(glm::cross(axis, helper));
-  return {u, glm::cross(axis, u), axis};
-}
 
 /// The half space dot(normal, p) >= offset.
 struct HalfSpace {
