@@ -93,7 +93,8 @@ void run_still(const ArArguments& arguments) {
                          {"shadow_on_virtual", count_set(augmented.shadow_on_virtual)},
                          {"object", count_set(augmented.object_mask)}}},
                        {"ms", stages_json(result)}};
-    std::cout << line.dump() << '\n';
+    // A file's name is bytes; those that are no UTF-8 are replaced.
+    std::cout << line.dump(-1, ' ', false, json::error_handler_t::replace) << '\n';
     return;
   }
   report_left_out(result);
