@@ -13,13 +13,13 @@ namespace {
 void run(ArArguments& arguments) {
   const int inputs = !arguments.image.empty() + !arguments.video.empty() + (arguments.camera >= 0);
   if (inputs != 1)
-    throw ar::InputError("gnomon ar: exactly one of --image, --video and --camera is needed");
+    throw ar::InputError("ar: exactly one of --image, --video and --camera is needed");
   if (arguments.method == "zpass") arguments.session.method = pipeline::VolumeMethod::zpass;
   if (arguments.method == "zfail") arguments.session.method = pipeline::VolumeMethod::zfail;
   if (arguments.method == "auto") arguments.session.method = pipeline::VolumeMethod::automatic;
   arguments.session.steps = arguments.steps;
   if (!arguments.image.empty()) return run_still(arguments);
-  if (arguments.steps) throw ar::InputError("gnomon ar: --steps goes with --image");
+  if (arguments.steps) throw ar::InputError("ar: --steps goes with --image");
   run_video(arguments);
 }
 
@@ -41,7 +41,9 @@ void add_ar(CLI::App& program) {
       "--json", arguments->as_json,
       "One line of JSON: tags, poses, passes, milliseconds a stage (video: a line a frame)");
   command
-      ->add_option("--method", arguments->method, "How volumes are counted (default: the scene's)")
+      ->add_option("--method", arguments->method,
+                   "How volumes are counted (default: the scene's). zpass is the paper's and wrong "
+                   "where the camera stands in a shadow; auto takes zfail there")
       ->check(CLI::IsMember({"zpass", "zfail", "auto"}));
   command->add_flag("--double-shadows", arguments->session.double_shadows,
                     "Darken real surfaces also where they are in a real shadow already (the paper "

@@ -51,6 +51,25 @@ void report_left_out(const ar::SessionResult& result) {
 
 }  // namespace
 
+void check_folder(const fs::path& out) {
+  if (out.empty()) throw ar::InputError("--out: a folder's name is empty");
+  std::error_code error;
+  fs::path existing = fs::absolute(out, error);
+  while (!fs::exists(existing, error) && existing.has_relative_path())
+    existing = existing.parent_path();
+  if (!fs::is_directory(existing, error))
+    throw ar::InputError(existing.string() + ": not a folder, so nothing can be written to " +
+                         out.string());
+  if (access(existing.c_str(), W_OK | X_OK) != 0)
+    throw ar::InputError(existing.string() + ": this folder cannot be written");
+}
+
+void refuse_to_replace(const fs::path& input, const fs::path& output) {
+  std::error_code error;
+  if (fs::equivalent(input, output, error))
+    throw ar::InputError(output.string() + ": is the input itself; name another folder");
+}
+
 void make_folder(const fs::path& out) {
   std::error_code error;
   fs::create_directories(out, error);
@@ -64,6 +83,8 @@ void make_folder(const fs::path& out) {
 void run_still(const ArArguments& arguments) {
   const ar::SceneFile scene = ar::read_scene(arguments.scene);
   const ar::Image picture = ar::read_image_rgb(arguments.image);
+  check_folder(arguments.out);
+  refuse_to_replace(arguments.image, arguments.out / "composite.png");
   ar::Session session(scene, picture.width, picture.height, arguments.session);
   for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
   const ar::SessionResult result = session.process(picture, 0.0);

@@ -69,8 +69,10 @@ void run_video(const ArArguments& arguments) {
   options.masks = false;
   ar::Session session(scene, reader.width(), reader.height(), options);
   for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
-  make_folder(arguments.out);
   const fs::path target = arguments.out / "composite.avi";
+  check_folder(arguments.out);
+  refuse_to_replace(arguments.video, target);
+  make_folder(arguments.out);
   ar::VideoWriter writer(target, reader.width(), reader.height(), reader.frames_per_second());
 
   VideoSummary summary;

@@ -229,15 +229,17 @@ void write_png(const std::filesystem::path& path, const Image& image) {
                       image.pixels.size() ==
                           static_cast<std::size_t>(image.width) * image.height * image.channels,
                   "a picture's pixels fit its size and its 1, 3 or 4 channels");
-  PendingFile file(path);
   const auto output = OIIO::ImageOutput::create("png");
   if (!output) fail(path.string(), OIIO::geterror());
   ImageSpec spec(image.width, image.height, image.channels, TypeDesc::UINT8);
   spec.attribute("oiio:UnassociatedAlpha", 1);
-  if (!output->open(file.temporary().string(), spec) ||
+  // Encoded in memory: OpenImageIO does not say when a disk is full.
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  if (!output->set_ioproxy(&memory) || !output->open("picture.png", spec) ||
       !output->write_image(TypeDesc::UINT8, image.pixels.data()) || !output->close())
     fail(path.string(), fmt::format("cannot be written: {}", output->geterror()));
-  file.commit();
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace gnomon::ar

@@ -46,6 +46,16 @@ AugmentOptions augment_options(const SceneFile& file, const SessionOptions& opti
   return out;
 }
 
+CameraModel camera_of(const SceneFile& file, int width, int height) {
+  try {
+    return camera_for_picture(read_camera(file.camera_file), width, height);
+  } catch (const InputError& error) {
+    const std::string what = error.what(), name = file.camera_file.string();
+    if (what.starts_with(name)) throw;
+    throw InputError(name + ": " + what);
+  }
+}
+
 TrackerOptions tracker_options(const SceneFile& file, const SessionOptions& options) {
   TrackerOptions out;
   out.dictionaries = file.dictionaries;
@@ -72,8 +82,14 @@ struct Session::Impl {
   Impl(const SceneFile& scene_file, int width, int height, const SessionOptions& options)
       : file(scene_file),
         layout(scene_file.tags),
-        lens(camera_for_picture(read_camera(scene_file.camera_file), width, height)),
+        lens(camera_of(scene_file, width, height)),
         augmenter(lens, augment_options(scene_file, options)) {
+    const auto is_virtual = [](const SceneObject& o) {
+      return o.role == pipeline::Role::virtual_object;
+    };
+    if (std::ranges::none_of(file.objects, is_virtual))
+      throw InputError(file.file.string() +
+                       ": [[object]]: none has role = \"virtual\", so there is nothing to draw");
     models = load_models(file, &notes);
     if (file.tags_yaml) add_bundles(*file.tags_yaml);
     check_bodies();

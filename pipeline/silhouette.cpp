@@ -1,5 +1,6 @@
 #include "pipeline/silhouette.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -47,11 +48,16 @@ glm::dvec4 light_in_model(const glm::vec4& light_world, const glm::mat4& world_f
 
 Silhouette find_silhouette(const Topology& topology, const glm::dvec4& light_model) {
   Silhouette silhouette;
-  const bool both_sides = !topology.closed();
-  silhouette.casting.resize(topology.triangle_count());
-  for (std::size_t t = 0; t < topology.triangle_count(); ++t) {
-    silhouette.casting[t] = casting_side(topology, t, light_model, both_sides);
-  }
+  const auto cast = [&](bool both_sides) {
+    silhouette.casting.resize(topology.triangle_count());
+    for (std::size_t t = 0; t < topology.triangle_count(); ++t) {
+      silhouette.casting[t] = casting_side(topology, t, light_model, both_sides);
+    }
+  };
+  cast(!topology.closed());
+  const auto casts = [](std::int8_t side) { return side != 0; };
+  // No side faces a light that is inside: the whole shell keeps it in.
+  if (std::ranges::none_of(silhouette.casting, casts)) cast(true);
   for (const Edge& edge : topology.edges) {
     int sum = 0;
     for (const EdgeUse& use : topology.uses_of(edge)) {

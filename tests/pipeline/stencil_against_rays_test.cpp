@@ -176,6 +176,26 @@ TEST(StencilAgainstRays, OpenMeshesDifferOnlyAtEdgesAndTies) {
   EXPECT_LT(sum.wrong, sum.tested / 500);
 }
 
+TEST(StencilAgainstRays, ALightInsideACasterIsKeptIn) {
+  std::mt19937 random(20041);
+  test::Disagreement sum;
+  std::size_t shadowed = 0;
+  for (int i = 0; i < 40; ++i) {
+    Scene scene = test::random_scene(random);
+    const glm::vec3 center(scene.objects[1].world_from_model[3]);
+    scene.lights[0].position = glm::vec4(center, 1.0f);
+    const RayReference rays(scene);
+    const Camera camera = far_camera(random);
+    const test::Counted counted =
+        test::count_scene(scene, camera, {VolumeMethod::automatic, extrusion_of(i)});
+    shadowed += shadowed_pixels(counted);
+    sum += test::compare_with_rays(counted, scene, rays, camera);
+  }
+  report("light inside a caster, automatic", sum, shadowed);
+  EXPECT_EQ(sum.unexplained, 0u);
+  EXPECT_GT(shadowed, sum.tested / 3);
+}
+
 // Oracle: a closed chain covers every pixel as often with front as with back faces.
 TEST(ClosedVolumes, LeaveNothingInTheStencilWhenEveryFaceCounts) {
   std::mt19937 random(20032);
