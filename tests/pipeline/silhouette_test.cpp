@@ -51,9 +51,12 @@ TEST(Silhouette, RunsCounterClockwiseSeenFromTheLight) {
   }
 }
 
-TEST(Silhouette, LightInsideAClosedMeshFacesNothing) {
+// Oracle: the definition: twelve triangles turn their backs, all cast reversed, nothing is outline.
+TEST(Silhouette, LightInsideAClosedMeshIsKeptInByAllOfIt) {
   const Topology cube = build_topology(*model_of(test::box_mesh(glm::vec3(1.0f))));
-  EXPECT_EQ(lit_count(of(cube, {0.0f, 0.1f, 0.2f, 1.0f})), 0);
+  const Silhouette silhouette = of(cube, {0.0f, 0.1f, 0.2f, 1.0f});
+  EXPECT_EQ(silhouette.casting, std::vector<std::int8_t>(12, -1));
+  EXPECT_TRUE(silhouette.edges.empty());
 }
 
 // Oracle: the definition, with counts by hand.

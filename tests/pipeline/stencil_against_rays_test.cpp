@@ -180,7 +180,7 @@ TEST(StencilAgainstRays, ALightInsideACasterIsKeptIn) {
   std::mt19937 random(20041);
   test::Disagreement sum;
   std::size_t shadowed = 0;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < kScenes; ++i) {
     Scene scene = test::random_scene(random);
     const glm::vec3 center(scene.objects[1].world_from_model[3]);
     scene.lights[0].position = glm::vec4(center, 1.0f);
