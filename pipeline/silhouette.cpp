@@ -1,6 +1,5 @@
 #include "pipeline/silhouette.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -22,6 +21,29 @@ std::int8_t casting_side(const Topology& topology, std::size_t triangle, const g
   if (facing > 0.0) return 1;
   if (facing < 0.0 && both_sides) return -1;
   return 0;
+}
+
+/// Is the point inside a closed mesh? Counts, with sign, where a line from it leaves. The line's
+/// direction has no simple ratio, so that it meets no edge of a mesh made by hand.
+bool encloses(const Topology& topology, const glm::dvec3& point) {
+  const glm::dvec3 along(0.5773194, 0.6180339, 0.5336512);
+  int leaves = 0;
+  for (std::size_t t = 0; t < topology.triangle_count(); ++t) {
+    const auto corner = [&](std::size_t k) {
+      return glm::dvec3(topology.positions[topology.indices[3 * t + k]]) - point;
+    };
+    const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
+    // The line passes the triangle if it turns the same way about its three edges.
+    const double ab = glm::dot(along, glm::cross(a, b)), bc = glm::dot(along, glm::cross(b, c));
+    const double ca = glm::dot(along, glm::cross(c, a));
+    const bool front = ab >= 0.0 && bc >= 0.0 && ca >= 0.0;
+    const bool back = ab < 0.0 && bc < 0.0 && ca < 0.0;
+    if (!front && !back) continue;
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    const double ahead = glm::dot(normal, a), rate = glm::dot(normal, along);
+    if (rate != 0.0 && ahead / rate > 0.0) leaves += front ? 1 : -1;
+  }
+  return leaves != 0;
 }
 
 }  // namespace
@@ -48,16 +70,12 @@ glm::dvec4 light_in_model(const glm::vec4& light_world, const glm::mat4& world_f
 
 Silhouette find_silhouette(const Topology& topology, const glm::dvec4& light_model) {
   Silhouette silhouette;
-  const auto cast = [&](bool both_sides) {
-    silhouette.casting.resize(topology.triangle_count());
-    for (std::size_t t = 0; t < topology.triangle_count(); ++t) {
-      silhouette.casting[t] = casting_side(topology, t, light_model, both_sides);
-    }
-  };
-  cast(!topology.closed());
-  const auto casts = [](std::int8_t side) { return side != 0; };
-  // No side faces a light that is inside: the whole shell keeps it in.
-  if (std::ranges::none_of(silhouette.casting, casts)) cast(true);
+  const bool both_sides =
+      !topology.closed() || (light_model.w != 0.0 && encloses(topology, glm::dvec3(light_model)));
+  silhouette.casting.resize(topology.triangle_count());
+  for (std::size_t t = 0; t < topology.triangle_count(); ++t) {
+    silhouette.casting[t] = casting_side(topology, t, light_model, both_sides);
+  }
   for (const Edge& edge : topology.edges) {
     int sum = 0;
     for (const EdgeUse& use : topology.uses_of(edge)) {

@@ -37,8 +37,8 @@ glm::dvec4 light_in_model(const glm::vec4& light_world, const glm::mat4& world_f
 /// The casting triangles and their boundary. One decision a triangle, from the sign of a double
 /// determinant; a triangle edge-on to the light does not cast.
 /// A closed mesh casts with the triangles that face the light. An open one casts with all: its
-/// outline would have holes where a sheet turns its back to the light. So does a closed one that no
-/// triangle of faces the light, which is then inside it.
+/// outline would have holes where a sheet turns its back to the light. So does a closed one
+/// with the light inside: the shell keeps it in.
 Silhouette find_silhouette(const Topology& topology, const glm::dvec4& light_model);
 
 }  // namespace gnomon::pipeline
