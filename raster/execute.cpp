@@ -1,6 +1,7 @@
-// Commands are run in groups: all passes in a row whose targets have one size. Inside a group the
-// front end sets up every draw's triangles and bins them, then each tile runs all commands of all
-// passes while its pixels are in cache.
+// Commands are run in groups: all passes in a row whose targets have one size, cut where a group's
+// set-up triangles would take too much memory. Inside a group the front end sets up every draw's
+// triangles and bins them, then each tile runs all commands of all passes while its pixels are in
+// cache.
 #include "raster/execute.h"
 
 #include <algorithm>
@@ -16,6 +17,9 @@ namespace {
 
 constexpr std::size_t kVerticesPerChunk = 4096;
 constexpr std::size_t kTrianglesPerChunk = 1024;
+/// A group ends when its draws have so many triangles (a set-up triangle takes some 300 bytes), or
+/// so many commands (a bin a tile each).
+constexpr std::size_t kTrianglesPerGroup = std::size_t{1} << 21, kCommandsPerGroup = 512;
 
 struct Size {
   int width = 0, height = 0;
@@ -91,6 +95,11 @@ void run_tile(const std::vector<Job>& jobs, std::size_t tile, const Size& size) 
   }
 }
 
+std::size_t triangles_of(const Command& command) {
+  const Draw* draw = std::get_if<Draw>(&command);
+  return draw ? draw->mesh.indices.size() / 3 : 0;
+}
+
 void run_group(std::vector<Job>& jobs, const Size& size, int threads) {
   for (Job& job : jobs)
     if (std::holds_alternative<Draw>(*job.command)) set_up_draw(job, threads);
@@ -108,20 +117,27 @@ void execute(const Frame& frame, const ExecuteOptions& options) {
   require(options.threads >= 0, "a number of threads is not negative");
   std::vector<Job> jobs;
   Size size;
-  std::size_t number = 0;
+  std::size_t number = 0, triangles = 0;
+  const auto finish_group = [&] {
+    run_group(jobs, size, options.threads);
+    jobs.clear();
+    triangles = 0;
+  };
   for (const Pass& pass : frame.passes()) {
     if (size_of(pass.targets) != size) {
-      run_group(jobs, size, options.threads);
-      jobs.clear();
+      finish_group();
       size = size_of(pass.targets);
     }
     for (const Command& command : pass.commands) {
       const bool wanted = number >= options.first_command && number < options.commands;
       ++number;
-      if (wanted) jobs.push_back({&command, pass.targets, {}, {}, {}});
+      if (!wanted) continue;
+      jobs.push_back({&command, pass.targets, {}, {}, {}});
+      triangles += triangles_of(command);
+      if (triangles >= kTrianglesPerGroup || jobs.size() >= kCommandsPerGroup) finish_group();
     }
   }
-  run_group(jobs, size, options.threads);
+  finish_group();
 }
 
 }  // namespace gnomon::raster

@@ -130,6 +130,14 @@ TEST(Reference, ABlitUnderAScissorEqualsByteForByte) {
   }
 }
 
+TEST(Reference, MoreCommandsThanOneGroupHoldsEqualByteForByte) {
+  random_frames::Targets fast(40, 30, raster::ColorFormat::rgba8, raster::DepthFormat::d24);
+  random_frames::Targets slow(40, 30, raster::ColorFormat::rgba8, raster::DepthFormat::d24);
+  raster::execute(random_frame(77, 1300, fast), {.threads = 2});
+  reference::execute(random_frame(77, 1300, slow));
+  EXPECT_EQ(fast.bytes(), slow.bytes());
+}
+
 TEST(Reference, TheFirstCommandsAloneEqualByteForByte) {
   for (const std::size_t commands : {0u, 1u, 7u, 23u}) {
     random_frames::Targets fast(70, 40, raster::ColorFormat::rgba8, raster::DepthFormat::d24);
