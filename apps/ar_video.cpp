@@ -7,6 +7,7 @@
 
 #include "apps/ar_arguments.h"
 #include "apps/ar_json.h"
+#include "apps/output_folder.h"
 #include "ar/video.h"
 
 namespace gnomon::apps {

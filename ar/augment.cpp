@@ -30,12 +30,6 @@ class Stopwatch {
 Image mask_at_photo(const PinholeView& view, const std::vector<std::uint8_t>& rgba_rows,
                     std::size_t channel) {
   Image out{view.photo_width(), view.photo_height(), 1, {}};
-  bool empty = true;
-  for (std::size_t i = channel; i < rgba_rows.size() && empty; i += 4) empty = rgba_rows[i] == 0;
-  if (empty) {
-    out.pixels.resize(static_cast<std::size_t>(out.width) * out.height);
-    return out;
-  }
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x)
       out.pixels.push_back(covered_share(view, rgba_rows, channel, x, y) >= 0.5 ? 255 : 0);

@@ -1,0 +1,17 @@
+// The folder that a command writes its results to.
+#pragma once
+
+#include <filesystem>
+
+namespace gnomon::apps {
+
+/// Before any work: could the folder be made, or written to? Throws ar::InputError if not.
+void check_folder(const std::filesystem::path& out);
+
+/// Throws ar::InputError if both are one file.
+void refuse_to_replace(const std::filesystem::path& input, const std::filesystem::path& output);
+
+/// Makes the folder for results if it is not there. Throws ar::InputError unless it can be written.
+void make_folder(const std::filesystem::path& out);
+
+}  // namespace gnomon::apps
