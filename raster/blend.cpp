@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "raster/unorm.h"
-
 namespace gnomon::raster {
 
 namespace {
@@ -86,11 +84,12 @@ std::array<float, 4> channels(const glm::vec4& c) { return {c.r, c.g, c.b, c.a};
 
 }  // namespace
 
-Rgba8 blend_rgba8(const ColorState& state, const glm::vec4& source, const Rgba8& stored) noexcept {
-  Rgba8 out = to_rgba8(source);
+Rgba8 blend_rgba8(const ColorState& state, const Rgba8& constant, const Rgba8& source,
+                  const Rgba8& stored) noexcept {
+  Rgba8 out = source;
   if (state.blend) {
-    const std::array<int, 4> sum = combine<int>(*state.blend, widened(out), widened(stored),
-                                                widened(to_rgba8(state.blend->constant)), 255);
+    const std::array<int, 4> sum =
+        combine<int>(*state.blend, widened(out), widened(stored), widened(constant), 255);
     for (std::size_t c = 0; c < 4; ++c)
       out[c] = static_cast<std::uint8_t>((std::clamp(sum[c], 0, 255 * 255) + 127) / 255);
   }

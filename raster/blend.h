@@ -13,8 +13,9 @@
 
 namespace gnomon::raster {
 
-/// The stored value after source is written over it.
-Rgba8 blend_rgba8(const ColorState& state, const glm::vec4& source, const Rgba8& stored) noexcept;
+/// The stored value after source is written over it; `constant` is the blend's constant colour.
+Rgba8 blend_rgba8(const ColorState& state, const Rgba8& constant, const Rgba8& source,
+                  const Rgba8& stored) noexcept;
 glm::vec4 blend_rgba32f(const ColorState& state, const glm::vec4& source,
                         const glm::vec4& stored) noexcept;
 

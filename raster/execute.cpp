@@ -1,5 +1,6 @@
-// Commands are run in groups: all passes in a row whose targets have one size, cut where a group's
-// set-up triangles would take too much memory. Inside a group the front end sets up every draw's
+// Commands are run in groups: all passes in a row whose targets have one size, cut where a depth
+// buffer that was drawn into is looked up, and where a group's set-up triangles would take too much
+// memory. Inside a group the front end sets up every draw's
 // triangles and bins them, then each tile runs all commands of all passes while its pixels are in
 // cache.
 #include "raster/execute.h"
@@ -34,18 +35,21 @@ Size size_of(const Targets& targets) { return {targets.width(), targets.height()
 /// of those that touch it.
 struct Job {
   const Command* command = nullptr;
-  Targets targets;
-  DrawSetup setup;
-  std::vector<std::vector<SetupTriangle>> chunks;
-  std::vector<std::vector<const SetupTriangle*>> bins;
+  Targets targets = {};
+  DrawSetup setup = {};
+  FragmentSetup fragments = {};
+  std::vector<std::vector<SetupTriangle>> chunks = {};
+  std::vector<std::vector<const SetupTriangle*>> bins = {};
 };
 
-void set_up_draw(Job& job, int threads) {
+void set_up_draw(Job& job, const Kernels& kernels, int threads) {
   const Draw& draw = std::get<Draw>(*job.command);
   job.setup = make_draw_setup(draw, job.targets);
+  job.fragments = make_fragment_setup(draw, job.targets);
   std::vector<glm::vec4> clip(draw.mesh.positions.size());
   for_each_chunk(clip.size(), kVerticesPerChunk, threads, [&](std::size_t first, std::size_t last) {
-    transform_vertices(draw, first, std::span(clip).subspan(first, last - first));
+    kernels.transform(draw.clip_from_model, draw.mesh.positions.data() + first, last - first,
+                      clip.data() + first);
   });
   const std::size_t triangles = draw.mesh.indices.size() / 3;
   job.chunks.resize((triangles + kTrianglesPerChunk - 1) / kTrianglesPerChunk);
@@ -80,17 +84,18 @@ void bin_draw(Job& job, const Size& size) {
     }
 }
 
-void run_tile(const std::vector<Job>& jobs, std::size_t tile, const Size& size) {
+void run_tile(const std::vector<Job>& jobs, const Kernels& kernels, std::size_t tile,
+              const Size& size) {
   const TileIndex index{static_cast<int>(tile) % size.tiles_x(),
                         static_cast<int>(tile) / size.tiles_x()};
   for (const Job& job : jobs) {
     if (const Clear* clear = std::get_if<Clear>(job.command)) {
-      clear_tile(*clear, job.targets, index);
+      clear_tile(kernels, *clear, job.targets, index);
     } else if (const Blit* blit = std::get_if<Blit>(job.command)) {
-      blit_tile(*blit, job.targets, index);
+      blit_tile(kernels, *blit, job.targets, index);
     } else {
       for (const SetupTriangle* triangle : job.bins[tile])
-        draw_tile(job.setup, *triangle, job.targets, index);
+        draw_tile(kernels, job.setup, job.fragments, *triangle, job.targets, index);
     }
   }
 }
@@ -100,26 +105,54 @@ std::size_t triangles_of(const Command& command) {
   return draw ? draw->mesh.indices.size() / 3 : 0;
 }
 
-void run_group(std::vector<Job>& jobs, const Size& size, int threads) {
+/// Calls body(map) for each depth buffer that a command looks up.
+template <class Body>
+void for_each_map(const Command& command, Body body) {
+  const Draw* draw = std::get_if<Draw>(&command);
+  if (!draw) return;
+  if (const Flat* flat = std::get_if<Flat>(&draw->shading)) {
+    if (flat->depth_lookup) body(flat->depth_lookup->map);
+    return;
+  }
+  for (const Light& light : std::get<Lit>(draw->shading).lights)
+    if (light.shadow_map) body(light.shadow_map->map);
+}
+
+/// A tile may run ahead of others inside a group, so a group neither draws into a depth buffer that
+/// it looks up nor the other way round.
+bool must_wait(const std::vector<Job>& jobs, const Command& command, const Targets& targets) {
+  bool wait = false;
+  for_each_map(command, [&](const DepthBuffer* map) {
+    for (const Job& job : jobs) wait = wait || job.targets.depth == map;
+  });
+  if (!targets.depth) return wait;
+  for (const Job& job : jobs)
+    for_each_map(*job.command,
+                 [&](const DepthBuffer* map) { wait = wait || map == targets.depth; });
+  return wait;
+}
+
+void run_group(std::vector<Job>& jobs, const Size& size, const Kernels& kernels, int threads) {
   for (Job& job : jobs)
-    if (std::holds_alternative<Draw>(*job.command)) set_up_draw(job, threads);
+    if (std::holds_alternative<Draw>(*job.command)) set_up_draw(job, kernels, threads);
   for_each_chunk(jobs.size(), 1, threads, [&](std::size_t first, std::size_t) {
     if (std::holds_alternative<Draw>(*jobs[first].command)) bin_draw(jobs[first], size);
   });
   const std::size_t tiles = static_cast<std::size_t>(size.tiles_x()) * size.tiles_y();
   for_each_chunk(tiles, 1, threads,
-                 [&](std::size_t first, std::size_t) { run_tile(jobs, first, size); });
+                 [&](std::size_t first, std::size_t) { run_tile(jobs, kernels, first, size); });
 }
 
 }  // namespace
 
 void execute(const Frame& frame, const ExecuteOptions& options) {
   require(options.threads >= 0, "a number of threads is not negative");
+  const Kernels& kernels = raster::kernels(options.isa);
   std::vector<Job> jobs;
   Size size;
   std::size_t number = 0, triangles = 0;
   const auto finish_group = [&] {
-    run_group(jobs, size, options.threads);
+    run_group(jobs, size, kernels, options.threads);
     jobs.clear();
     triangles = 0;
   };
@@ -132,7 +165,8 @@ void execute(const Frame& frame, const ExecuteOptions& options) {
       const bool wanted = number >= options.first_command && number < options.commands;
       ++number;
       if (!wanted) continue;
-      jobs.push_back({&command, pass.targets, {}, {}, {}});
+      if (must_wait(jobs, command, pass.targets)) finish_group();
+      jobs.push_back({.command = &command, .targets = pass.targets});
       triangles += triangles_of(command);
       if (triangles >= kTrianglesPerGroup || jobs.size() >= kCommandsPerGroup) finish_group();
     }

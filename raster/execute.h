@@ -6,12 +6,15 @@
 #include <limits>
 
 #include "raster/frame.h"
+#include "raster/isa.h"
 
 namespace gnomon::raster {
 
 struct ExecuteOptions {
   /// 0: as many as the machine has; 1: all work on the calling thread, no scheduler is touched.
   int threads = 0;
+  /// Instruction set of the kernels. Misuse: one that is not among available_isas().
+  Isa isa = Isa::best;
   /// Leave out the first so many commands (they were run before).
   std::size_t first_command = 0;
   /// Stop before this command, counted from the frame's first one.

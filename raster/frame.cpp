@@ -32,6 +32,28 @@ void require_texture(const std::shared_ptr<const Texture>& texture, const MeshVi
           "a textured mesh has texture coordinates");
 }
 
+void require_lookup(const std::optional<DepthLookup>& lookup, const Targets& targets) {
+  if (!lookup) return;
+  require(lookup->map != nullptr, "a depth lookup has a map");
+  require(lookup->map != targets.depth, "a draw does not look up the depth buffer it goes to");
+}
+
+void require_shading(const Draw& draw, const Targets& targets) {
+  if (const Flat* flat = std::get_if<Flat>(&draw.shading)) {
+    require_texture(flat->texture, draw.mesh);
+    require_lookup(flat->depth_lookup, targets);
+    return;
+  }
+  const Lit& lit = std::get<Lit>(draw.shading);
+  require(draw.mesh.normals.size() == draw.mesh.positions.size(), "a lit mesh has normals");
+  require(lit.material.shininess >= 0, "a specular exponent is not negative");
+  for (const Light& light : lit.lights) {
+    require(light.spot_exponent >= 0, "a spot exponent is not negative");
+    require_lookup(light.shadow_map, targets);
+  }
+  require_texture(lit.texture, draw.mesh);
+}
+
 void require_mesh(const MeshView& mesh) {
   const std::size_t count = mesh.positions.size();
   require(mesh.indices.size() % 3 == 0, "a mesh has three indices a triangle");
@@ -92,15 +114,7 @@ void Frame::draw(Draw draw) {
   const DepthRange& range = draw.state.depth_range;
   require(range.near >= 0.0f && range.near <= 1.0f && range.far >= 0.0f && range.far <= 1.0f,
           "a depth range lies in [0, 1]");
-  if (const Lit* lit = std::get_if<Lit>(&draw.shading)) {
-    require(draw.mesh.normals.size() == draw.mesh.positions.size(), "a lit mesh has normals");
-    require(lit->material.shininess >= 0, "a specular exponent is not negative");
-    for (const Light& light : lit->lights)
-      require(light.spot_exponent >= 0, "a spot exponent is not negative");
-    require_texture(lit->texture, draw.mesh);
-  } else {
-    require_texture(std::get<Flat>(draw.shading).texture, draw.mesh);
-  }
+  require_shading(draw, pass.targets);
   pass.commands.emplace_back(std::move(draw));
 }
 

@@ -153,15 +153,6 @@ DrawSetup make_draw_setup(const Draw& draw, const Targets& targets) {
   return setup;
 }
 
-void transform_vertices(const Draw& draw, std::size_t first, std::span<glm::vec4> out) {
-  const glm::mat4& m = draw.clip_from_model;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const glm::vec4 p = draw.mesh.positions[first + i];
-    for (int row = 0; row < 4; ++row)
-      out[i][row] = ((m[0][row] * p.x + m[1][row] * p.y) + m[2][row] * p.z) + m[3][row] * p.w;
-  }
-}
-
 void set_up_triangles(const DrawSetup& setup, std::span<const glm::vec4> clip, std::size_t first,
                       std::size_t count, std::vector<SetupTriangle>& out) {
   const std::span<const std::uint32_t> indices = setup.draw->mesh.indices;

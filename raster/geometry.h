@@ -64,9 +64,6 @@ struct DrawSetup {
 
 DrawSetup make_draw_setup(const Draw& draw, const Targets& targets);
 
-/// Clip-space positions of vertices [first, first + out.size()).
-void transform_vertices(const Draw& draw, std::size_t first, std::span<glm::vec4> out);
-
 /// Appends the set-up triangles of mesh triangles [first, first + count), in order, without those
 /// that cover no pixel. `clip` holds the clip-space positions of all vertices of the draw.
 void set_up_triangles(const DrawSetup& setup, std::span<const glm::vec4> clip, std::size_t first,

@@ -44,12 +44,14 @@ Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, int x, int
   fragment.front_facing = triangle.front_facing;
   const MeshView& mesh = draw.mesh;
   const Lit* lit = std::get_if<Lit>(&draw.shading);
-  if (!lit && mesh.colors.empty() && !std::get<Flat>(draw.shading).texture) return fragment;
+  const Flat* flat = std::get_if<Flat>(&draw.shading);
+  if (flat && mesh.colors.empty() && !flat->texture && !flat->depth_lookup) return fragment;
 
   const glm::vec3 p = vertex_weights(triangle, x, y);
   const std::uint32_t* index = mesh.indices.data() + triangle.attributes.first_index;
   if (!mesh.colors.empty()) fragment.color = weighted(mesh.colors, index, p);
   if (!mesh.texcoords.empty()) fragment.texcoord = weighted(mesh.texcoords, index, p);
+  if (flat && flat->depth_lookup) fragment.model = weighted(mesh.positions, index, p);
   if (lit) {
     fragment.normal = world_normal(lit->world_from_model_normal, weighted(mesh.normals, index, p));
     fragment.world = world_position(lit->world_from_model, weighted(mesh.positions, index, p));

@@ -1,11 +1,17 @@
 // The kernel boundary: what happens to the 64 pixels of an 8x8 block. Everything here is integer; a
 // set of pixels is a 64-bit mask, bit 8 y + x for pixel (x, y) of the block, and planes are
-// block-linear (raster/tiled_plane.h). Kernels cannot fail.
+// block-linear (raster/tiled_plane.h). Kernels cannot fail. They are written twice: in plain C++
+// (kernels_scalar.cpp) and once for all vector instruction sets (kernels_simd.cpp); both leave the
+// same bytes.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include "raster/isa.h"
 #include "raster/state.h"
 
 namespace gnomon::raster {
@@ -28,9 +34,6 @@ struct BlockEdges {
   std::int32_t step_x[3], step_y[3];
 };
 
-/// Pixels where no edge is negative.
-PixelMask cover_block(const BlockEdges& edges) noexcept;
-
 /// A depth plane at a block's first pixel, half a unit added (raster/depth_plane.h).
 struct BlockDepth {
   std::uint64_t base = 0, step_x = 0, step_y = 0;
@@ -47,16 +50,35 @@ struct FragmentTests {
   std::uint8_t stencil_ref = 0;
 };
 
-/// Runs stencil test, depth test, stencil update and depth write on the covered pixels of a block;
-/// returns those that pass all. `depth` and `stencil` point to the block's 64 values; either may be
-/// null if its test is off.
-PixelMask test_block(const FragmentTests& tests, PixelMask covered, const BlockDepth& plane,
-                     std::uint32_t* depth, std::uint8_t* stencil) noexcept;
+/// The kernels of one instruction set.
+struct Kernels {
+  /// Pixels where no edge is negative.
+  PixelMask (*cover_block)(const BlockEdges& edges) noexcept;
 
-/// func(a, b) as in "reference func stored".
-bool compare(CompareFunc func, std::uint32_t a, std::uint32_t b) noexcept;
+  /// Runs stencil test, depth test, stencil update and depth write on the covered pixels of a
+  /// block; returns those that pass all. `depth` and `stencil` point to the block's 64 values;
+  /// either may be null if its test is off.
+  PixelMask (*test_block)(const FragmentTests& tests, PixelMask covered, const BlockDepth& plane,
+                          std::uint32_t* depth, std::uint8_t* stencil) noexcept;
 
-/// The stencil value after op, before the write mask.
-std::uint8_t apply(StencilOp op, std::uint8_t value, std::uint8_t ref) noexcept;
+  /// Writes 64 RGBA8 source colours over the pixels of the mask: blending, then the colour mask
+  /// (raster/blend.h). Four bytes a pixel: r, g, b, a; `constant` is the blend's constant colour.
+  void (*blend_block)(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
+                      const std::uint8_t* source, std::uint8_t* stored) noexcept;
+
+  /// Clip-space positions of `count` vertices: ((m0 x + m1 y) + m2 z) + m3 w in float32, each
+  /// operation rounded once.
+  void (*transform)(const glm::mat4& clip_from_model, const glm::vec4* positions, std::size_t count,
+                    glm::vec4* out) noexcept;
+};
+
+/// The 64 depths of a plane that is not narrow, clamped to [low, high].
+void wide_depth_values(const BlockDepth& plane, std::uint32_t* out) noexcept;
+
+/// Misuse: an instruction set that available_isas() does not list.
+const Kernels& kernels(Isa isa);
+/// Those of a vector instruction set; null if this build or this machine has not got it.
+const Kernels* simd_kernels(Isa isa);
+const Kernels& scalar_kernels();
 
 }  // namespace gnomon::raster

@@ -52,6 +52,8 @@ void add_light(const Light& light, const Lit& lit, const glm::vec3& normal, cons
   sum.ambient = sum.ambient + light.ambient * strength;
   const float n_dot_l = dot3(normal, to_light);
   if (!(n_dot_l > 0.0f)) return;
+  if (light.shadow_map)
+    strength = strength * compare_depth(*light.shadow_map, glm::vec4(world, 1.0f));
   sum.diffuse = sum.diffuse + light.diffuse * (n_dot_l * strength);
   const glm::vec3 half_vector = normalized(to_light + normalized(lit.eye_world - world));
   const float n_dot_h = dot3(normal, half_vector);
@@ -62,6 +64,12 @@ void add_light(const Light& light, const Lit& lit, const glm::vec3& normal, cons
 glm::vec4 shade_flat(const Flat& flat, const Fragment& fragment) {
   glm::vec4 color = flat.color * fragment.color;
   if (flat.texture) color = color * sample(*flat.texture, fragment.texcoord.x, fragment.texcoord.y);
+  if (flat.depth_lookup) {
+    const float share = compare_depth(*flat.depth_lookup, fragment.model);
+    const bool rgb = flat.depth_texture_mode != DepthTextureMode::alpha;
+    const bool alpha = flat.depth_texture_mode != DepthTextureMode::luminance;
+    color = color * glm::vec4(glm::vec3(rgb ? share : 1.0f), alpha ? share : 1.0f);
+  }
   return color;
 }
 

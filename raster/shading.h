@@ -4,7 +4,9 @@
 // squaring, so no library function lies on the way to a pixel.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -14,14 +16,21 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "raster/depth_lookup.h"
 #include "raster/texture.h"
 
 namespace gnomon::raster {
 
-/// color, times the mesh's colours if it has some, times the texture if there is one.
+/// Which channels a depth lookup scales (GL_DEPTH_TEXTURE_MODE): r, g, b; alpha; or all four.
+enum class DepthTextureMode : std::uint8_t { luminance, alpha, intensity };
+
+/// color, times the mesh's colours if it has some, times the texture and the depth lookup if there
+/// are some.
 struct Flat {
   glm::vec4 color{1.0f};
-  std::shared_ptr<const Texture> texture;
+  std::shared_ptr<const Texture> texture = nullptr;
+  std::optional<DepthLookup> depth_lookup = std::nullopt;
+  DepthTextureMode depth_texture_mode = DepthTextureMode::luminance;
 };
 
 struct Material {
@@ -42,6 +51,8 @@ struct Light {
   glm::vec3 spot_direction{0.0f, -1.0f, 0.0f};
   float spot_cos_cutoff = -1.0f;
   int spot_exponent = 0;
+  /// A shadow map: its lookup scales the light's diffuse and specular terms.
+  std::optional<DepthLookup> shadow_map = std::nullopt;
 };
 
 /// Lighting of a mesh that has normals. Terms can be left out, so that a pass draws ambient and
@@ -66,6 +77,8 @@ using Shading = std::variant<Flat, Lit>;
 /// What is interpolated, perspective-correct, to a fragment.
 struct Fragment {
   glm::vec3 world{0.0f}, normal{0.0f};
+  /// Position in the mesh's own space.
+  glm::vec4 model{0.0f, 0.0f, 0.0f, 1.0f};
   glm::vec4 color{1.0f};
   glm::vec2 texcoord{0.0f};
   bool front_facing = true;

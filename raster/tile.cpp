@@ -1,6 +1,7 @@
 #include "raster/tile.h"
 
 #include <algorithm>
+#include <array>
 
 #include "raster/blend.h"
 #include "raster/interpolate.h"
@@ -48,26 +49,47 @@ void for_each_block(const PixelBox& box, TileIndex tile, Body body) {
     }
 }
 
-void write_color(ColorBuffer& target, TileIndex tile, std::size_t offset, const ColorState& state,
-                 const glm::vec4& color) {
-  if (target.format() == ColorFormat::rgba8) {
-    Rgba8& stored = target.rgba8().tile(tile.x, tile.y)[offset];
-    stored = blend_rgba8(state, color, stored);
-  } else {
-    glm::vec4& stored = target.rgba32f().tile(tile.x, tile.y)[offset];
-    stored = blend_rgba32f(state, color, stored);
-  }
+/// Colours for the pixels of a block on their way to an RGBA8 target.
+using Rgba8Block = std::array<Rgba8, kPixelsPerBlock>;
+
+void write_rgba8(const Kernels& kernels, ColorBuffer& target, TileIndex tile, std::size_t offset,
+                 const ColorState& state, PixelMask mask, const Rgba8Block& source) {
+  const Rgba8 k = state.blend ? to_rgba8(state.blend->constant) : Rgba8{};
+  Rgba8* const stored = target.rgba8().tile(tile.x, tile.y) + offset;
+  kernels.blend_block(state, {k[0], k[1], k[2], k[3]}, mask, source.data()->data(), stored->data());
 }
 
-void store_masked(const Rgba8& source, const std::array<bool, 4>& write, Rgba8& stored) {
-  for (std::size_t c = 0; c < 4; ++c)
-    if (write[c]) stored[c] = source[c];
+/// Writes the colours of the mask's pixels: of_pixel(i) in floats.
+template <class OfPixel>
+void write_block(const Kernels& kernels, ColorBuffer& target, TileIndex tile, std::size_t offset,
+                 const ColorState& state, PixelMask mask, OfPixel of_pixel) {
+  if (target.format() == ColorFormat::rgba32f) {
+    glm::vec4* const stored = target.rgba32f().tile(tile.x, tile.y) + offset;
+    for_each_pixel(
+        mask, [&](std::size_t i) { stored[i] = blend_rgba32f(state, of_pixel(i), stored[i]); });
+    return;
+  }
+  Rgba8Block source;
+  for_each_pixel(mask, [&](std::size_t i) { source[i] = to_rgba8(of_pixel(i)); });
+  write_rgba8(kernels, target, tile, offset, state, mask, source);
+}
+
+/// One colour for all pixels of the mask.
+void write_constant(const Kernels& kernels, ColorBuffer& target, TileIndex tile, std::size_t offset,
+                    const ColorState& state, PixelMask mask, const glm::vec4& color) {
+  if (target.format() == ColorFormat::rgba32f) {
+    write_block(kernels, target, tile, offset, state, mask, [&](std::size_t) { return color; });
+    return;
+  }
+  Rgba8Block source;
+  source.fill(to_rgba8(color));
+  write_rgba8(kernels, target, tile, offset, state, mask, source);
 }
 
 /// The draw's fragments all have one colour.
 bool is_constant(const Draw& draw) {
   const Flat* flat = std::get_if<Flat>(&draw.shading);
-  return flat && !flat->texture && draw.mesh.colors.empty();
+  return flat && !flat->texture && !flat->depth_lookup && draw.mesh.colors.empty();
 }
 
 bool any(const std::array<bool, 4>& write) { return write[0] || write[1] || write[2] || write[3]; }
@@ -130,7 +152,8 @@ BlockDepth depth_at_tile(const DrawSetup& setup, const DepthPlane& plane, TileIn
 
 }  // namespace
 
-void clear_tile(const Clear& clear, const Targets& targets, TileIndex tile) noexcept {
+void clear_tile(const Kernels& kernels, const Clear& clear, const Targets& targets,
+                TileIndex tile) noexcept {
   const ColorState color_state{clear.color_write, {}};
   const bool color = clear.color && any(clear.color_write);
   const bool depth = clear.depth && clear.depth_write;
@@ -140,18 +163,24 @@ void clear_tile(const Clear& clear, const Targets& targets, TileIndex tile) noex
   for_each_block(
       scissor_box(clear.scissor, targets.width(), targets.height()), tile,
       [&](int, int, std::size_t offset, PixelMask mask) {
-        for_each_pixel(mask, [&](std::size_t i) {
-          if (color) write_color(*targets.color, tile, offset + i, color_state, *clear.color);
-          if (depth) targets.depth->plane().tile(tile.x, tile.y)[offset + i] = depth_value;
-          if (clear.stencil) {
-            std::uint8_t& s = targets.stencil->plane().tile(tile.x, tile.y)[offset + i];
-            s = static_cast<std::uint8_t>((s & ~stencil_mask) | (*clear.stencil & stencil_mask));
-          }
-        });
+        if (color)
+          write_constant(kernels, *targets.color, tile, offset, color_state, mask, *clear.color);
+        if (depth) {
+          std::uint32_t* const z = targets.depth->plane().tile(tile.x, tile.y) + offset;
+          for_each_pixel(mask, [&](std::size_t i) { z[i] = depth_value; });
+        }
+        if (clear.stencil) {
+          std::uint8_t* const s = targets.stencil->plane().tile(tile.x, tile.y) + offset;
+          for_each_pixel(mask, [&](std::size_t i) {
+            s[i] =
+                static_cast<std::uint8_t>((s[i] & ~stencil_mask) | (*clear.stencil & stencil_mask));
+          });
+        }
       });
 }
 
-void blit_tile(const Blit& blit, const Targets& targets, TileIndex tile) noexcept {
+void blit_tile(const Kernels& kernels, const Blit& blit, const Targets& targets,
+               TileIndex tile) noexcept {
   ColorBuffer& target = *targets.color;
   const PixelBox image_box = scissor_box(Rect{blit.x, blit.y, blit.image.width, blit.image.height},
                                          target.width(), target.height());
@@ -159,27 +188,36 @@ void blit_tile(const Blit& blit, const Targets& targets, TileIndex tile) noexcep
       intersect(image_box, scissor_box(blit.scissor, target.width(), target.height()));
   const ColorState state{blit.color_write, {}};
   for_each_block(box, tile, [&](int x, int y, std::size_t offset, PixelMask mask) {
-    for_each_pixel(mask, [&](std::size_t i) {
+    const auto pixel = [&](std::size_t i) -> Rgba8 {
       const int px = x + static_cast<int>(i) % kBlockSize,
                 py = y + static_cast<int>(i) / kBlockSize;
       const std::uint8_t* c = blit.image.pixel(px - blit.x, py - blit.y);
-      const std::uint8_t alpha = blit.image.channels == 4 ? c[3] : std::uint8_t{0};
-      const Rgba8 source{c[0], c[1], c[2], alpha};
-      if (target.format() == ColorFormat::rgba8)
-        store_masked(source, blit.color_write, target.rgba8().tile(tile.x, tile.y)[offset + i]);
-      else
-        write_color(target, tile, offset + i, state, to_floats(source));
-    });
+      return {c[0], c[1], c[2], blit.image.channels == 4 ? c[3] : std::uint8_t{0}};
+    };
+    if (target.format() == ColorFormat::rgba32f) {
+      write_block(kernels, target, tile, offset, state, mask,
+                  [&](std::size_t i) { return to_floats(pixel(i)); });
+      return;
+    }
+    Rgba8Block source;
+    for_each_pixel(mask, [&](std::size_t i) { source[i] = pixel(i); });
+    write_rgba8(kernels, target, tile, offset, state, mask, source);
   });
 }
 
-void draw_tile(const DrawSetup& setup, const SetupTriangle& triangle, const Targets& targets,
-               TileIndex tile) noexcept {
+FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets) {
+  FragmentSetup setup;
+  setup.front = resolve_tests(draw, targets, true);
+  setup.back = resolve_tests(draw, targets, false);
+  setup.color = targets.color && any(draw.state.color.write);
+  if (setup.color && is_constant(draw)) setup.constant = shade(draw.shading, Fragment{});
+  return setup;
+}
+
+void draw_tile(const Kernels& kernels, const DrawSetup& setup, const FragmentSetup& fragments,
+               const SetupTriangle& triangle, const Targets& targets, TileIndex tile) noexcept {
   const Draw& draw = *setup.draw;
-  const FragmentTests tests = resolve_tests(draw, targets, triangle.front_facing);
-  const bool color = targets.color && any(draw.state.color.write);
-  const std::optional<glm::vec4> constant =
-      color && is_constant(draw) ? std::optional(shade(draw.shading, Fragment{})) : std::nullopt;
+  const FragmentTests& tests = triangle.front_facing ? fragments.front : fragments.back;
   std::uint32_t* const depth =
       targets.depth ? targets.depth->plane().tile(tile.x, tile.y) : nullptr;
   std::uint8_t* const stencil =
@@ -190,26 +228,26 @@ void draw_tile(const DrawSetup& setup, const SetupTriangle& triangle, const Targ
   for_each_block(triangle.box, tile, [&](int x, int y, std::size_t offset, PixelMask in_box) {
     BlockEdges edges;
     if (!edges_at_block(triangle, x, y, edges)) return;
-    const PixelMask covered = cover_block(edges) & in_box;
+    const PixelMask covered = kernels.cover_block(edges) & in_box;
     if (!covered) return;
     BlockDepth plane = at_tile;
     plane.base += static_cast<std::uint64_t>(x - tile.x * kTileSize) * plane.step_x +
                   static_cast<std::uint64_t>(y - tile.y * kTileSize) * plane.step_y;
-    const PixelMask passed = test_block(tests, covered, plane, depth ? depth + offset : nullptr,
-                                        stencil ? stencil + offset : nullptr);
-    if (!color) return;
-    if (constant) {
-      for_each_pixel(passed, [&](std::size_t i) {
-        write_color(*targets.color, tile, offset + i, draw.state.color, *constant);
-      });
+    const PixelMask passed =
+        kernels.test_block(tests, covered, plane, depth ? depth + offset : nullptr,
+                           stencil ? stencil + offset : nullptr);
+    if (!fragments.color || !passed) return;
+    if (fragments.constant) {
+      write_constant(kernels, *targets.color, tile, offset, draw.state.color, passed,
+                     *fragments.constant);
       return;
     }
-    for_each_pixel(passed, [&](std::size_t i) {
-      const int px = x + static_cast<int>(i) % kBlockSize,
-                py = y + static_cast<int>(i) / kBlockSize;
-      write_color(*targets.color, tile, offset + i, draw.state.color,
-                  shade(draw.shading, interpolate(draw, triangle, px, py)));
-    });
+    write_block(kernels, *targets.color, tile, offset, draw.state.color, passed,
+                [&](std::size_t i) {
+                  const int px = x + static_cast<int>(i) % kBlockSize,
+                            py = y + static_cast<int>(i) / kBlockSize;
+                  return shade(draw.shading, interpolate(draw, triangle, px, py));
+                });
   });
 }
 

@@ -10,6 +10,7 @@
 
 #include "raster/clip.h"
 #include "raster/geometry.h"
+#include "raster/kernels.h"
 
 namespace gnomon::peer {
 
@@ -148,7 +149,8 @@ void for_each_draw(const Pass& pass, const Body& body) {
     const Draw* draw = std::get_if<Draw>(&command);
     if (!draw || !counts(*draw)) continue;
     std::vector<glm::vec4> clip(draw->mesh.positions.size());
-    transform_vertices(*draw, 0, clip);
+    scalar_kernels().transform(draw->clip_from_model, draw->mesh.positions.data(), clip.size(),
+                               clip.data());
     body(make_draw_setup(*draw, pass.targets), clip);
   }
 }

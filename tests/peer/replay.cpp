@@ -10,7 +10,7 @@
 #include <string>
 
 #include "raster/check.h"
-#include "raster/geometry.h"
+#include "raster/kernels.h"
 
 namespace gnomon::peer {
 
@@ -209,7 +209,8 @@ class Replayer {
 
   void draw_triangles(const Draw& draw) const {
     std::vector<glm::vec4> clip(draw.mesh.positions.size());
-    transform_vertices(draw, 0, clip);
+    scalar_kernels().transform(draw.clip_from_model, draw.mesh.positions.data(), clip.size(),
+                               clip.data());
     const std::vector<std::uint32_t> indices = drawable(draw, clip);
     std::vector<glm::vec4> colors(clip.size(), glm::vec4(1.0f));
     const Flat* flat = std::get_if<Flat>(&draw.shading);

@@ -5,6 +5,7 @@
 
 #include "random_frames.h"
 #include "raster/execute.h"
+#include "variants.h"
 
 using namespace gnomon;
 using random_frames::random_frame;
@@ -15,31 +16,29 @@ struct Size {
   int width, height;
 };
 
-/// Bytes that differ between the fast renderer on so many threads and the reference, for one seed.
-std::size_t differing_bytes(std::uint32_t seed, Size size, int threads, raster::ColorFormat color,
-                            raster::DepthFormat depth) {
-  random_frames::Targets fast(size.width, size.height, color, depth);
-  random_frames::Targets slow(size.width, size.height, color, depth);
-  raster::execute(random_frame(seed, 40, fast), {.threads = threads});
-  reference::execute(random_frame(seed, 40, slow));
-  const std::vector<std::uint8_t> a = fast.bytes(), b = slow.bytes();
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
-  return count;
+template <class Execute>
+std::vector<std::uint8_t> bytes_after(std::uint32_t seed, Size size, Execute execute) {
+  const auto color = seed % 3 ? raster::ColorFormat::rgba8 : raster::ColorFormat::rgba32f;
+  const auto depth = seed % 2 ? raster::DepthFormat::d24 : raster::DepthFormat::d16;
+  random_frames::Targets targets(size.width, size.height, color, depth);
+  execute(random_frame(seed, 40, targets));
+  return targets.bytes();
 }
 
 }  // namespace
 
 class ReferenceAtSize : public ::testing::TestWithParam<Size> {};
 
-TEST_P(ReferenceAtSize, RandomFramesEqualByteForByte) {
+TEST_P(ReferenceAtSize, RandomFramesEqualByteForByteOnEveryInstructionSet) {
   const Size size = GetParam();
-  const std::array<int, 5> threads{1, 2, 3, 7, 16};
   for (std::uint32_t seed = 1; seed <= 200; ++seed) {
-    const auto color = seed % 3 ? raster::ColorFormat::rgba8 : raster::ColorFormat::rgba32f;
-    const auto depth = seed % 2 ? raster::DepthFormat::d24 : raster::DepthFormat::d16;
-    EXPECT_EQ(differing_bytes(seed, size, threads[seed % threads.size()], color, depth), 0u)
-        << "seed " << seed;
+    const auto expected =
+        bytes_after(seed, size, [](const raster::Frame& f) { reference::execute(f); });
+    for (const auto& options : variants::every_isa(variants::kThreads[seed % 5]))
+      EXPECT_EQ(
+          bytes_after(seed, size, [&](const raster::Frame& f) { raster::execute(f, options); }),
+          expected)
+          << "seed " << seed << ", " << variants::name(options);
   }
 }
 

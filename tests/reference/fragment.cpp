@@ -206,6 +206,7 @@ Fragment interpolate(const Draw& draw, const std::uint32_t* index, const glm::ve
   fragment.front_facing = front_facing;
   if (!draw.mesh.colors.empty()) fragment.color = mix(draw.mesh.colors);
   if (!draw.mesh.texcoords.empty()) fragment.texcoord = mix(draw.mesh.texcoords);
+  fragment.model = mix(draw.mesh.positions);
   if (const Lit* lit = std::get_if<Lit>(&draw.shading)) {
     const glm::vec3 n = mix(draw.mesh.normals);
     const glm::vec4 p = mix(draw.mesh.positions);

@@ -1,7 +1,11 @@
+// The kernels in plain C++, and the choice among all of them.
 #include "raster/kernels.h"
 
 #include <algorithm>
+#include <cstring>
 
+#include "raster/blend.h"
+#include "raster/check.h"
 #include "raster/tiled_plane.h"
 
 namespace gnomon::raster {
@@ -44,6 +48,29 @@ PixelMask compare_mask(CompareFunc func, Left left, Right right) {
   return 0;
 }
 
+/// The stencil value after op, before the write mask.
+std::uint8_t apply(StencilOp op, std::uint8_t value, std::uint8_t ref) {
+  switch (op) {
+    case StencilOp::keep:
+      return value;
+    case StencilOp::zero:
+      return 0;
+    case StencilOp::replace:
+      return ref;
+    case StencilOp::incr:
+      return value == 255 ? value : static_cast<std::uint8_t>(value + 1);
+    case StencilOp::incr_wrap:
+      return static_cast<std::uint8_t>(value + 1);
+    case StencilOp::decr:
+      return value == 0 ? value : static_cast<std::uint8_t>(value - 1);
+    case StencilOp::decr_wrap:
+      return static_cast<std::uint8_t>(value - 1);
+    case StencilOp::invert:
+      return static_cast<std::uint8_t>(~value);
+  }
+  return value;
+}
+
 void depth_values(const BlockDepth& plane, std::uint32_t (&out)[kPixelsPerBlock]) {
   if (plane.narrow) {
     const auto base = static_cast<std::uint32_t>(plane.base);
@@ -54,13 +81,7 @@ void depth_values(const BlockDepth& plane, std::uint32_t (&out)[kPixelsPerBlock]
         out[y * kBlockSize + x] = (base + x * step_x + y * step_y) >> plane.fraction_bits;
     return;
   }
-  for (std::uint64_t y = 0; y < kBlockSize; ++y)
-    for (std::uint64_t x = 0; x < kBlockSize; ++x) {
-      const auto value =
-          static_cast<std::int64_t>(plane.base + x * plane.step_x + y * plane.step_y);
-      out[y * kBlockSize + x] = static_cast<std::uint32_t>(
-          std::clamp<std::int64_t>(value >> plane.fraction_bits, plane.low, plane.high));
-    }
+  wide_depth_values(plane, out);
 }
 
 void update_stencil(StencilOp op, PixelMask mask, std::uint8_t ref, std::uint8_t write_mask,
@@ -72,8 +93,6 @@ void update_stencil(StencilOp op, PixelMask mask, std::uint8_t ref, std::uint8_t
         static_cast<std::uint8_t>((old & ~write_mask) | (apply(op, old, ref) & write_mask));
   });
 }
-
-}  // namespace
 
 PixelMask cover_block(const BlockEdges& edges) noexcept {
   PixelMask mask = kAllPixels;
@@ -112,32 +131,50 @@ PixelMask test_block(const FragmentTests& tests, PixelMask covered, const BlockD
   return pass;
 }
 
-bool compare(CompareFunc func, std::uint32_t a, std::uint32_t b) noexcept {
-  return (compare_mask(
-              func, [&](int) { return a; }, [&](int) { return b; }) &
-          1) != 0;
+void blend_block(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
+                 const std::uint8_t* source, std::uint8_t* stored) noexcept {
+  const Rgba8 k{constant[0], constant[1], constant[2], constant[3]};
+  for_each_pixel(mask, [&](std::size_t i) {
+    Rgba8 from, to;
+    std::memcpy(from.data(), source + 4 * i, 4);
+    std::memcpy(to.data(), stored + 4 * i, 4);
+    to = blend_rgba8(state, k, from, to);
+    std::memcpy(stored + 4 * i, to.data(), 4);
+  });
 }
 
-std::uint8_t apply(StencilOp op, std::uint8_t value, std::uint8_t ref) noexcept {
-  switch (op) {
-    case StencilOp::keep:
-      return value;
-    case StencilOp::zero:
-      return 0;
-    case StencilOp::replace:
-      return ref;
-    case StencilOp::incr:
-      return value == 255 ? value : static_cast<std::uint8_t>(value + 1);
-    case StencilOp::incr_wrap:
-      return static_cast<std::uint8_t>(value + 1);
-    case StencilOp::decr:
-      return value == 0 ? value : static_cast<std::uint8_t>(value - 1);
-    case StencilOp::decr_wrap:
-      return static_cast<std::uint8_t>(value - 1);
-    case StencilOp::invert:
-      return static_cast<std::uint8_t>(~value);
+void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count,
+               glm::vec4* out) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec4 p = positions[i];
+    for (int row = 0; row < 4; ++row)
+      out[i][row] = ((m[0][row] * p.x + m[1][row] * p.y) + m[2][row] * p.z) + m[3][row] * p.w;
   }
-  return value;
+}
+
+}  // namespace
+
+void wide_depth_values(const BlockDepth& plane, std::uint32_t* out) noexcept {
+  for (std::uint64_t y = 0; y < kBlockSize; ++y)
+    for (std::uint64_t x = 0; x < kBlockSize; ++x) {
+      const auto value =
+          static_cast<std::int64_t>(plane.base + x * plane.step_x + y * plane.step_y);
+      out[y * kBlockSize + x] = static_cast<std::uint32_t>(
+          std::clamp<std::int64_t>(value >> plane.fraction_bits, plane.low, plane.high));
+    }
+}
+
+const Kernels& scalar_kernels() {
+  static constexpr Kernels kKernels{cover_block, test_block, blend_block, transform};
+  return kKernels;
+}
+
+const Kernels& kernels(Isa isa) {
+  if (isa == Isa::best) isa = available_isas().back();
+  if (isa == Isa::scalar) return scalar_kernels();
+  const Kernels* found = simd_kernels(isa);
+  require(found != nullptr, "an instruction set is one that this machine has");
+  return *found;
 }
 
 }  // namespace gnomon::raster
