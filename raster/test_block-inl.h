@@ -1,0 +1,214 @@
+// Vector kernel: stencil test, depth test, stencil update and depth write of a block.
+// Read once for each instruction set, so its guard goes to and fro with Highway's.
+#if defined(GNOMON_RASTER_TEST_BLOCK_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef GNOMON_RASTER_TEST_BLOCK_INL_H
+#undef GNOMON_RASTER_TEST_BLOCK_INL_H
+#else
+#define GNOMON_RASTER_TEST_BLOCK_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "raster/kernels.h"
+#include "raster/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace gnomon::raster {
+namespace HWY_NAMESPACE {
+
+/// The six comparisons that are neither `never` nor `always` are these three and their opposites.
+enum class Relation { less, equal, greater };
+
+struct Comparison {
+  Relation relation;
+  bool opposite;
+};
+
+HWY_INLINE Comparison comparison(CompareFunc func) {
+  switch (func) {
+    case CompareFunc::less:
+      return {Relation::less, false};
+    case CompareFunc::greater_equal:
+      return {Relation::less, true};
+    case CompareFunc::equal:
+      return {Relation::equal, false};
+    case CompareFunc::not_equal:
+      return {Relation::equal, true};
+    case CompareFunc::greater:
+      return {Relation::greater, false};
+    default:
+      return {Relation::greater, true};
+  }
+}
+
+template <Relation kRelation, class V>
+HWY_INLINE auto related(V a, V b) {
+  if constexpr (kRelation == Relation::less) return hn::Lt(a, b);
+  if constexpr (kRelation == Relation::equal) return hn::Eq(a, b);
+  if constexpr (kRelation == Relation::greater) return hn::Gt(a, b);
+}
+
+template <Relation kRelation>
+HWY_INLINE PixelMask related_stencils(std::uint8_t ref, std::uint8_t read_mask,
+                                      const std::uint8_t* stencil) {
+  const DU8 d;
+  const VU8 left = hn::Set(d, ref & read_mask), read = hn::Set(d, read_mask);
+  PixelMask mask = 0;
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d))
+    mask |= pixels_of(d, related<kRelation>(left, hn::And(hn::LoadU(d, stencil + i), read)), i);
+  return mask;
+}
+
+HWY_INLINE PixelMask test_stencil(const FragmentTests& tests, const std::uint8_t* stencil) {
+  const StencilFace& face = tests.stencil;
+  if (face.func == CompareFunc::always) return kAllPixels;
+  if (face.func == CompareFunc::never) return 0;
+  const Comparison c = comparison(face.func);
+  PixelMask mask = 0;
+  switch (c.relation) {
+    case Relation::less:
+      mask = related_stencils<Relation::less>(tests.stencil_ref, face.read_mask, stencil);
+      break;
+    case Relation::equal:
+      mask = related_stencils<Relation::equal>(tests.stencil_ref, face.read_mask, stencil);
+      break;
+    case Relation::greater:
+      mask = related_stencils<Relation::greater>(tests.stencil_ref, face.read_mask, stencil);
+      break;
+  }
+  return c.opposite ? ~mask : mask;
+}
+
+/// The 64 depths of a plane, vector by vector.
+class Depths {
+ public:
+  explicit HWY_INLINE Depths(const BlockDepth& plane) : plane_(plane) {
+    if (plane.narrow)
+      steps_ = lane_steps(DU32(), static_cast<std::uint32_t>(plane.step_x),
+                          static_cast<std::uint32_t>(plane.step_y));
+    else
+      wide_depth_values(plane, wide_);
+  }
+  HWY_INLINE VI32 at(std::size_t i) const {
+    const DU32 d;
+    if (!plane_.narrow) return hn::BitCast(DI32(), hn::LoadU(d, wide_ + i));
+    const std::uint32_t base =
+        value_at(static_cast<std::uint32_t>(plane_.base), static_cast<std::uint32_t>(plane_.step_x),
+                 static_cast<std::uint32_t>(plane_.step_y), i);
+    const VU32 value = hn::Add(hn::Set(d, base), steps_);
+    return hn::BitCast(
+        DI32(), plane_.fraction_bits == 8 ? hn::ShiftRight<8>(value) : hn::ShiftRight<16>(value));
+  }
+
+ private:
+  const BlockDepth& plane_;
+  VU32 steps_;
+  std::uint32_t wide_[kPixels];
+};
+
+/// Of the pixels `candidates` those whose depth stands in the relation (or, with `opposite`, does
+/// not); they are written if asked for. Depths have at most 24 bits, so signed comparison is right.
+template <Relation kRelation>
+HWY_INLINE PixelMask related_depths(const Depths& depths, bool opposite, bool write,
+                                    PixelMask candidates, std::uint32_t* depth) {
+  const DI32 d;
+  auto* const stored = reinterpret_cast<std::int32_t*>(depth);
+  PixelMask passed = 0;
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    const VI32 z = depths.at(i);
+    auto mask = related<kRelation>(z, hn::LoadU(d, stored + i));
+    if (opposite) mask = hn::Not(mask);
+    const PixelMask here = pixels_of(d, mask, i) & candidates;
+    if (write && here) hn::BlendedStore(z, lanes_of(d, here, i), d, stored + i);
+    passed |= here;
+  }
+  return passed;
+}
+
+HWY_INLINE void write_depths(const Depths& depths, PixelMask pixels, std::uint32_t* depth) {
+  const DI32 d;
+  auto* const stored = reinterpret_cast<std::int32_t*>(depth);
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d))
+    hn::BlendedStore(depths.at(i), lanes_of(d, pixels, i), d, stored + i);
+}
+
+HWY_INLINE PixelMask test_depth(const FragmentTests& tests, PixelMask candidates,
+                                const BlockDepth& plane, std::uint32_t* depth) {
+  if (tests.depth_func == CompareFunc::never) return 0;
+  const Depths depths(plane);
+  if (tests.depth_func == CompareFunc::always) {
+    if (tests.depth_write) write_depths(depths, candidates, depth);
+    return candidates;
+  }
+  const Comparison c = comparison(tests.depth_func);
+  switch (c.relation) {
+    case Relation::less:
+      return related_depths<Relation::less>(depths, c.opposite, tests.depth_write, candidates,
+                                            depth);
+    case Relation::equal:
+      return related_depths<Relation::equal>(depths, c.opposite, tests.depth_write, candidates,
+                                             depth);
+    default:
+      return related_depths<Relation::greater>(depths, c.opposite, tests.depth_write, candidates,
+                                               depth);
+  }
+}
+
+HWY_INLINE VU8 apply(StencilOp op, VU8 value, VU8 ref) {
+  const DU8 d;
+  const VU8 one = hn::Set(d, 1);
+  switch (op) {
+    case StencilOp::keep:
+      return value;
+    case StencilOp::zero:
+      return hn::Zero(d);
+    case StencilOp::replace:
+      return ref;
+    case StencilOp::incr:
+      return hn::SaturatedAdd(value, one);
+    case StencilOp::incr_wrap:
+      return hn::Add(value, one);
+    case StencilOp::decr:
+      return hn::SaturatedSub(value, one);
+    case StencilOp::decr_wrap:
+      return hn::Sub(value, one);
+    case StencilOp::invert:
+      return hn::Not(value);
+  }
+  return value;
+}
+
+HWY_INLINE void update_stencil(StencilOp op, PixelMask pixels, const FragmentTests& tests,
+                               std::uint8_t* stencil) {
+  const std::uint8_t write_mask = tests.stencil.write_mask;
+  if (op == StencilOp::keep || write_mask == 0 || pixels == 0) return;
+  const DU8 d;
+  const VU8 ref = hn::Set(d, tests.stencil_ref), write = hn::Set(d, write_mask);
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    const VU8 old = hn::LoadU(d, stencil + i);
+    const VU8 changed = hn::Or(hn::AndNot(write, old), hn::And(write, apply(op, old, ref)));
+    hn::StoreU(hn::IfThenElse(lanes_of(d, pixels, i), changed, old), d, stencil + i);
+  }
+}
+
+PixelMask test_block(const FragmentTests& tests, PixelMask covered, const BlockDepth& plane,
+                     std::uint32_t* depth, std::uint8_t* stencil) noexcept {
+  PixelMask stencil_pass = covered;
+  if (tests.stencil_test) {
+    stencil_pass &= test_stencil(tests, stencil);
+    update_stencil(tests.stencil.fail, covered & ~stencil_pass, tests, stencil);
+  }
+  PixelMask pass = stencil_pass;
+  if (tests.depth_test && stencil_pass) pass = test_depth(tests, stencil_pass, plane, depth);
+  if (tests.stencil_test) {
+    update_stencil(tests.stencil.depth_fail, stencil_pass & ~pass, tests, stencil);
+    update_stencil(tests.stencil.pass, pass, tests, stencil);
+  }
+  return pass;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace gnomon::raster
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target guard
