@@ -66,8 +66,7 @@ struct Draw {
   MeshView mesh;
   glm::mat4 clip_from_model{1.0f};
   Shading shading = Flat{};
-  /// Clamped to [0, 255] where it is used.
-  int stencil_ref = 0;
+  StencilRef stencil_ref;
   /// For people: what is drawn.
   std::string label = {};
 };

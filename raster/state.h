@@ -54,6 +54,14 @@ struct StencilFace {
   bool operator==(const StencilFace&) const = default;
 };
 
+/// References of the two facings; one number is for both. Clamped to [0, 255] where they are used.
+struct StencilRef {
+  int front = 0, back = 0;
+  constexpr StencilRef(int both = 0) : front(both), back(both) {}
+  constexpr StencilRef(int front_ref, int back_ref) : front(front_ref), back(back_ref) {}
+  bool operator==(const StencilRef&) const = default;
+};
+
 struct StencilState {
   StencilFace front, back;
   /// The same state for both facings.

@@ -105,7 +105,8 @@ FragmentTests resolve_tests(const Draw& draw, const Targets& targets, bool front
   if (state.stencil && targets.stencil) {
     tests.stencil_test = true;
     tests.stencil = front_facing ? state.stencil->front : state.stencil->back;
-    tests.stencil_ref = static_cast<std::uint8_t>(std::clamp(draw.stencil_ref, 0, 255));
+    const int ref = front_facing ? draw.stencil_ref.front : draw.stencil_ref.back;
+    tests.stencil_ref = static_cast<std::uint8_t>(std::clamp(ref, 0, 255));
   }
   return tests;
 }

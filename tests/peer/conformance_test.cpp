@@ -119,7 +119,8 @@ Frame grid_frame(std::uint32_t seed, random_frames::Targets& targets,
     draw.state.depth_range = {};
     draw.state.color.blend.reset();
     draw.mesh = {.positions = mesh->positions, .indices = mesh->indices};
-    draw.stencil_ref = random.integer(-2, 260);
+    const int ref = random.integer(-2, 260);
+    draw.stencil_ref = {ref, 257 - ref};
     draw.shading = Flat{glm::vec4(static_cast<float>(random.integer(0, 255)) / 255.0f)};
     frame.begin_pass("draw", targets.all());
     frame.draw(std::move(draw));

@@ -71,13 +71,13 @@ void set_color_mask(const std::array<bool, 4>& write) {
   glColorMask(write[0], write[1], write[2], write[3]);
 }
 
-void set_stencil(const std::optional<StencilState>& stencil, int ref) {
+void set_stencil(const std::optional<StencilState>& stencil, const StencilRef& ref) {
   enable(GL_STENCIL_TEST, stencil.has_value());
   if (!stencil) return;
   for (const bool front : {true, false}) {
     const StencilFace& face = front ? stencil->front : stencil->back;
     const GLenum which = front ? GL_FRONT : GL_BACK;
-    glStencilFuncSeparate(which, gl(face.func), ref, face.read_mask);
+    glStencilFuncSeparate(which, gl(face.func), front ? ref.front : ref.back, face.read_mask);
     glStencilOpSeparate(which, gl(face.fail), gl(face.depth_fail), gl(face.pass));
     glStencilMaskSeparate(which, face.write_mask);
   }

@@ -230,7 +230,8 @@ void record_pass(Frame& frame, std::uint32_t seed, int commands, const raster::T
       draw.mesh = {mesh->positions, mesh->indices, mesh->normals, {}, mesh->texcoords};
       if (r.chance(0.4f)) draw.mesh.colors = mesh->colors;
       draw.shading = random_shading(r);
-      draw.stencil_ref = r.integer(-2, 260);
+      const int ref = r.integer(-2, 260);
+      draw.stencil_ref = {ref, 257 - ref};
       frame.draw(draw);
     }
   }

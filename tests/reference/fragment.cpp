@@ -173,7 +173,8 @@ void process_fragment(const Draw& draw, const Targets& targets, const Sample& sa
   const bool stencil_test = state.stencil && targets.stencil;
   StencilFace face;
   if (stencil_test) face = sample.front_facing ? state.stencil->front : state.stencil->back;
-  const int ref = std::clamp(draw.stencil_ref, 0, 255);
+  const int ref =
+      std::clamp(sample.front_facing ? draw.stencil_ref.front : draw.stencil_ref.back, 0, 255);
   const auto update = [&](StencilOp op) {
     if (!stencil_test) return;
     std::uint8_t& s = targets.stencil->plane().at(x, y);
