@@ -1,6 +1,8 @@
 #include "raster/blend.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace gnomon::raster {
 
@@ -104,8 +106,11 @@ glm::vec4 blend_rgba32f(const ColorState& state, const glm::vec4& source,
   if (state.blend)
     out =
         combine<float>(*state.blend, out, channels(stored), channels(state.blend->constant), 1.0f);
-  for (std::size_t c = 0; c < 4; ++c)
+  for (std::size_t c = 0; c < 4; ++c) {
+    // A processor's own NaN may be negative or not.
+    if (std::isnan(out[c])) out[c] = std::numeric_limits<float>::quiet_NaN();
     if (!state.write[c]) out[c] = stored[static_cast<int>(c)];
+  }
   return {out[0], out[1], out[2], out[3]};
 }
 

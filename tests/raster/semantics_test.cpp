@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "random_frames.h"
 #include "raster/execute.h"
@@ -280,6 +282,28 @@ TEST(Blending, DividesExactlyAndRoundsToNearest) {
   for (int a = 0; a < 256; ++a)
     for (int d = 0; d < 256; ++d)
       ASSERT_EQ(color.rgba8().at(d, a)[0], (2 * (255 - a) * d + 255) / 510) << a << ' ' << d;
+}
+
+TEST(Blending, StoresEveryNanAsTheSameBits) {
+  // Oracle: the documented bits. x86's own NaN is 0xffc00000, AArch64's 0x7fc00000.
+  ColorBuffer color(1, 1, ColorFormat::rgba32f);
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Frame frame;
+  frame.begin_pass("clear", {.color = &color});
+  frame.clear({.color = glm::vec4(kInfinity)});
+  // Infinity minus infinity.
+  const Blend subtract{.color_op = BlendOp::subtract,
+                       .alpha_op = BlendOp::subtract,
+                       .dst_color = BlendFactor::one,
+                       .dst_alpha = BlendFactor::one};
+  const std::array<glm::vec4, 3> corners{glm::vec4{-1, -1, 0, 1}, {3, -1, 0, 1}, {-1, 3, 0, 1}};
+  const std::array<std::uint32_t, 3> indices{0, 1, 2};
+  frame.draw({.state = {.color = {.blend = subtract}},
+              .mesh = {.positions = corners, .indices = indices},
+              .shading = Flat{glm::vec4(kInfinity)}});
+  execute(frame);
+  for (int c = 0; c < 4; ++c)
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(color.at(0, 0)[c]), 0x7fc00000u);
 }
 
 TEST(Frame, MisuseNamesTheRule) {

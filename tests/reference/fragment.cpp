@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace gnomon::reference {
 
@@ -160,7 +161,8 @@ void write_color(ColorBuffer& target, int x, int y, const ColorState& state,
       const glm::vec4& k = state.blend->constant;
       value = blended<float>(*state.blend, c, s, d, {k.x, k.y, k.z, k.w}, 1.0f);
     }
-    stored[static_cast<int>(c)] = value;
+    stored[static_cast<int>(c)] =
+        std::isnan(value) ? std::numeric_limits<float>::quiet_NaN() : value;
   }
 }
 
