@@ -72,9 +72,6 @@ struct Kernels {
                     glm::vec4* out) noexcept;
 };
 
-/// The 64 depths of a plane that is not narrow, clamped to [low, high].
-void wide_depth_values(const BlockDepth& plane, std::uint32_t* out) noexcept;
-
 /// Misuse: an instruction set that available_isas() does not list.
 const Kernels& kernels(Isa isa);
 /// Those of a vector instruction set; null if this build or this machine has not got it.

@@ -81,7 +81,13 @@ void depth_values(const BlockDepth& plane, std::uint32_t (&out)[kPixelsPerBlock]
         out[y * kBlockSize + x] = (base + x * step_x + y * step_y) >> plane.fraction_bits;
     return;
   }
-  wide_depth_values(plane, out);
+  for (std::uint64_t y = 0; y < kBlockSize; ++y)
+    for (std::uint64_t x = 0; x < kBlockSize; ++x) {
+      const auto value =
+          static_cast<std::int64_t>(plane.base + x * plane.step_x + y * plane.step_y);
+      out[y * kBlockSize + x] = static_cast<std::uint32_t>(
+          std::clamp<std::int64_t>(value >> plane.fraction_bits, plane.low, plane.high));
+    }
 }
 
 void update_stencil(StencilOp op, PixelMask mask, std::uint8_t ref, std::uint8_t write_mask,
@@ -153,16 +159,6 @@ void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count
 }
 
 }  // namespace
-
-void wide_depth_values(const BlockDepth& plane, std::uint32_t* out) noexcept {
-  for (std::uint64_t y = 0; y < kBlockSize; ++y)
-    for (std::uint64_t x = 0; x < kBlockSize; ++x) {
-      const auto value =
-          static_cast<std::int64_t>(plane.base + x * plane.step_x + y * plane.step_y);
-      out[y * kBlockSize + x] = static_cast<std::uint32_t>(
-          std::clamp<std::int64_t>(value >> plane.fraction_bits, plane.low, plane.high));
-    }
-}
 
 const Kernels& scalar_kernels() {
   static constexpr Kernels kKernels{cover_block, test_block, blend_block, transform};

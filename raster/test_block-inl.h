@@ -79,6 +79,25 @@ HWY_INLINE PixelMask test_stencil(const FragmentTests& tests, const std::uint8_t
   return c.opposite ? ~mask : mask;
 }
 
+/// The 64 depths of a plane that is not narrow, clamped to [low, high], in 64-bit lanes.
+HWY_INLINE void wide_depths(const BlockDepth& plane, std::uint32_t* out) {
+  const hn::CappedTag<std::uint64_t, kWidth> d;
+  const hn::RebindToSigned<decltype(d)> signed_d;
+  const hn::Rebind<std::uint32_t, decltype(d)> narrow_d;
+  std::uint64_t row[kWidth];
+  for (std::size_t x = 0; x < kWidth; ++x) row[x] = plane.base + x * plane.step_x;
+  const auto low = hn::Set(signed_d, static_cast<std::int64_t>(plane.low));
+  const auto high = hn::Set(signed_d, static_cast<std::int64_t>(plane.high));
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    const auto up = hn::Set(d, (i / kWidth) * plane.step_y);
+    const auto value = hn::BitCast(signed_d, hn::Add(hn::LoadU(d, row + i % kWidth), up));
+    const auto depth =
+        plane.fraction_bits == 8 ? hn::ShiftRight<8>(value) : hn::ShiftRight<16>(value);
+    const auto clamped = hn::Min(hn::Max(depth, low), high);
+    hn::StoreU(hn::TruncateTo(narrow_d, hn::BitCast(d, clamped)), narrow_d, out + i);
+  }
+}
+
 /// The 64 depths of a plane, vector by vector.
 class Depths {
  public:
@@ -87,7 +106,7 @@ class Depths {
       steps_ = lane_steps(DU32(), static_cast<std::uint32_t>(plane.step_x),
                           static_cast<std::uint32_t>(plane.step_y));
     else
-      wide_depth_values(plane, wide_);
+      wide_depths(plane, wide_);
   }
   HWY_INLINE VI32 at(std::size_t i) const {
     const DU32 d;
