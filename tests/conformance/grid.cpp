@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <set>
 #include <utility>
 
 #include "raster/execute.h"
@@ -18,6 +17,8 @@ namespace {
 
 /// A grid that is wrong everywhere says so this often.
 constexpr int kReportsPerGrid = 5;
+/// A batch ends with so many cases or pixels, whichever comes first.
+constexpr std::size_t kCasesPerBatch = 100, kPixelsPerBatch = std::size_t{1} << 18;
 
 double now_s() {
   using Clock = std::chrono::steady_clock;
@@ -40,8 +41,18 @@ std::string hex(const std::uint8_t* bytes, std::size_t count) {
 }
 
 template <class T>
+bool same_storage(const raster::TiledPlane<T>& a, const raster::TiledPlane<T>& b) {
+  for (int y = 0; y < a.tiles_y(); ++y)
+    for (int x = 0; x < a.tiles_x(); ++x)
+      if (std::memcmp(a.tile(x, y), b.tile(x, y), sizeof(T) * raster::kPixelsPerTile) != 0)
+        return false;
+  return true;
+}
+
+template <class T>
 void compare_planes(const char* what, std::size_t set, const raster::TiledPlane<T>& got,
                     const raster::TiledPlane<T>& expected, Difference& difference) {
+  if (same_storage(got, expected)) return;
   for (int y = 0; y < got.height(); ++y)
     for (int x = 0; x < got.width(); ++x) {
       std::uint8_t a[sizeof(T)], b[sizeof(T)];
@@ -143,7 +154,10 @@ Grid::Grid(std::string name) : name_(std::move(name)), started_s_(now_s()) {
   (void)registered_report;
 }
 
-Grid::~Grid() { Report::only().add(*this, now_s() - started_s_); }
+Grid::~Grid() {
+  for (auto& [key, batch] : batches_) run(batch, std::get<Runs>(key));
+  Report::only().add(*this, now_s() - started_s_);
+}
 
 void Grid::count(std::uint64_t pixels, std::uint64_t runs, std::uint64_t differing_bytes) {
   ++cases_;
@@ -160,25 +174,37 @@ Expected Grid::check(const std::string& name, const std::vector<Buffers>& initia
   record(slow, expected.buffers);
   expected.outcomes = reference::execute(slow);
 
-  std::vector<Buffers> got = initial;
-  raster::Frame fast;
-  record(fast, got);
+  Batch& batch = batches_[{runs, initial.front().width(), initial.front().height()}];
+  batch.cases.push_back({name, initial, initial, expected.buffers});
+  record(batch.frame, batch.cases.back().got);
+  batch.pixels += pixels_of(initial);
+  if (batch.cases.size() >= kCasesPerBatch || batch.pixels >= kPixelsPerBatch) run(batch, runs);
+  return expected;
+}
+
+void Grid::run(Batch& batch, Runs runs) {
+  static std::size_t batches = 0;
+  if (batch.cases.empty()) return;
   const auto variants = runs == Runs::every_variant
                             ? variants::every_variant()
-                            : variants::every_isa(variants::kThreads[cases_ % 5]);
-  std::uint64_t differing = 0;
+                            : variants::every_isa(variants::kThreads[batches++ % 5]);
+  std::vector<std::uint64_t> differing(batch.cases.size());
   for (const raster::ExecuteOptions& options : variants) {
     // In place: the frame borrows the buffers.
-    std::copy(initial.begin(), initial.end(), got.begin());
-    raster::execute(fast, options);
-    const Difference difference = compare(got, expected.buffers);
-    differing += difference.bytes;
-    if (difference.bytes != 0 && reported_++ < kReportsPerGrid)
-      ADD_FAILURE() << name_ << ", case \"" << name << "\", " << variants::name(options) << ": "
-                    << difference.first << "; " << difference.bytes << " bytes differ";
+    for (Case& c : batch.cases) std::copy(c.initial.begin(), c.initial.end(), c.got.begin());
+    raster::execute(batch.frame, options);
+    for (std::size_t i = 0; i < batch.cases.size(); ++i) {
+      const Case& c = batch.cases[i];
+      const Difference difference = compare(c.got, c.expected);
+      differing[i] += difference.bytes;
+      if (difference.bytes != 0 && reported_++ < kReportsPerGrid)
+        ADD_FAILURE() << name_ << ", case \"" << c.name << "\", " << variants::name(options) << ": "
+                      << difference.first << "; " << difference.bytes << " bytes differ";
+    }
   }
-  count(pixels_of(initial), variants.size(), differing);
-  return expected;
+  for (std::size_t i = 0; i < batch.cases.size(); ++i)
+    count(pixels_of(batch.cases[i].initial), variants.size(), differing[i]);
+  batch = {};
 }
 
 Expected Grid::check(const std::string& name, const Buffers& initial, const RecordPass& record,

@@ -6,7 +6,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "raster/frame.h"
@@ -38,13 +40,13 @@ struct Buffers {
   int height() const { return color.height(); }
 };
 
-/// Records a case for these targets. It is called once for the reference and once for the variants
+/// Records a case for these targets. It is called twice, for the reference and for the variants,
 /// and must record the same both times.
 using Record = std::function<void(raster::Frame&, std::vector<Buffers>&)>;
 /// The same where there is one set of targets: they are one pass's, which has begun.
 using RecordPass = std::function<void(raster::Frame&, Buffers&)>;
 
-/// each_isa: every instruction set, on a number of threads that changes from case to case;
+/// each_isa: every instruction set, on a number of threads that changes from batch to batch;
 /// every_variant: every instruction set on every number of threads.
 enum class Runs { each_isa, every_variant };
 
@@ -56,6 +58,8 @@ struct Expected {
   const Buffers& only() const { return buffers.front(); }
 };
 
+/// The reference runs a case at once. The variants run batches of cases, each case a pass of one
+/// frame, because starting threads takes longer than most cases do.
 class Grid {
  public:
   /// `name` as in the printed table.
@@ -64,7 +68,8 @@ class Grid {
   Grid(const Grid&) = delete;
   Grid& operator=(const Grid&) = delete;
 
-  /// Fails the running test where a variant leaves another byte than the reference.
+  /// Fails the running test, at the latest when the grid ends, where a variant leaves another byte
+  /// than the reference.
   Expected check(const std::string& name, const std::vector<Buffers>& initial, const Record& record,
                  Runs runs = Runs::each_isa);
   Expected check(const std::string& name, const Buffers& initial, const RecordPass& record,
@@ -74,10 +79,21 @@ class Grid {
   void count(std::uint64_t pixels, std::uint64_t runs, std::uint64_t differing_bytes);
 
  private:
-  struct Totals;
   friend class Report;
+  struct Case {
+    std::string name;
+    std::vector<Buffers> initial, got, expected;
+  };
+  struct Batch {
+    raster::Frame frame;
+    std::vector<Case> cases;
+    std::uint64_t pixels = 0;
+  };
+  void run(Batch& batch, Runs runs);
 
   std::string name_;
+  /// By runs and by the first target's size: passes of one size in a row are one group to raster/.
+  std::map<std::tuple<Runs, int, int>, Batch> batches_;
   std::uint64_t cases_ = 0, pixels_ = 0, runs_ = 0, compared_ = 0, differing_bytes_ = 0;
   int reported_ = 0;
   double started_s_ = 0.0;
