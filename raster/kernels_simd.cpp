@@ -6,6 +6,8 @@
 
 // Ice Lake's AVX-512 is not compiled unless it is asked for.
 #define HWY_WANT_AVX3_DL
+// An SVE vector has no size the compiler knows, and the kernels keep four of them in a struct.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE_256 | HWY_SVE2 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/kernels_simd.cpp"
 #include <hwy/foreach_target.h>
