@@ -3,22 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/float32.h"
+
 namespace gnomon::reference {
 
 namespace {
 
 using namespace gnomon::raster;
+using float32::over;
+using float32::plus;
+using float32::times;
 __extension__ typedef __int128 Wide;
 
-float plus(float a, float b) {
-  return static_cast<float>(static_cast<double>(a) + static_cast<double>(b));
-}
-float times(float a, float b) {
-  return static_cast<float>(static_cast<double>(a) * static_cast<double>(b));
-}
-float over(float a, float b) {
-  return static_cast<float>(static_cast<double>(a) / static_cast<double>(b));
-}
 float or_zero(float v) { return v != v ? 0.0f : v; }
 
 /// -1, 0 or 1 as `share` of `one` is less than, equal to or greater than `units`, exactly.
