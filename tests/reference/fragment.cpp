@@ -168,8 +168,8 @@ void write_color(ColorBuffer& target, int x, int y, const ColorState& state,
 
 }  // namespace
 
-void process_fragment(const Draw& draw, const Targets& targets, const Sample& sample,
-                      const std::function<glm::vec4()>& color) {
+Outcome process_fragment(const Draw& draw, const Targets& targets, const Sample& sample,
+                         const std::function<glm::vec4()>& color) {
   const State& state = draw.state;
   const int x = sample.x, y = sample.y;
   const bool stencil_test = state.stencil && targets.stencil;
@@ -185,12 +185,12 @@ void process_fragment(const Draw& draw, const Targets& targets, const Sample& sa
   if (stencil_test &&
       !holds(face.func, ref & face.read_mask, targets.stencil->at(x, y) & face.read_mask)) {
     update(face.fail);
-    return;
+    return Outcome::stencil_fail;
   }
   if (state.depth && targets.depth) {
     if (!holds(state.depth->func, sample.depth, targets.depth->at(x, y))) {
       update(face.depth_fail);
-      return;
+      return Outcome::depth_fail;
     }
     if (state.depth->write) targets.depth->plane().at(x, y) = sample.depth;
   }
@@ -198,6 +198,7 @@ void process_fragment(const Draw& draw, const Targets& targets, const Sample& sa
   const auto& write = state.color.write;
   if (targets.color && (write[0] || write[1] || write[2] || write[3]))
     write_color(*targets.color, x, y, state.color, color());
+  return Outcome::pass;
 }
 
 Fragment interpolate(const Draw& draw, const std::uint32_t* index, const glm::vec3& w,

@@ -17,10 +17,13 @@ struct Sample {
   bool front_facing = true;
 };
 
+/// Where a fragment's way ended.
+enum class Outcome : std::uint8_t { stencil_fail, depth_fail, pass };
+
 /// Stencil test, depth test, stencil update, depth write, shading (only if it is seen), blending,
 /// colour mask.
-void process_fragment(const raster::Draw& draw, const raster::Targets& targets,
-                      const Sample& sample, const std::function<glm::vec4()>& color);
+Outcome process_fragment(const raster::Draw& draw, const raster::Targets& targets,
+                         const Sample& sample, const std::function<glm::vec4()>& color);
 
 /// Attributes under perspective-correct weights of a mesh triangle's three vertices.
 raster::Fragment interpolate(const raster::Draw& draw, const std::uint32_t* index,

@@ -26,12 +26,26 @@ struct Vertex {
 struct Target {
   int width = 0, height = 0;
   Targets buffers;
+  Outcomes* outcomes = nullptr;
 };
 
-Target make_target(const Targets& t) {
-  if (t.color) return {t.color->width(), t.color->height(), t};
-  if (t.depth) return {t.depth->width(), t.depth->height(), t};
-  return {t.stencil->width(), t.stencil->height(), t};
+Target make_target(const Targets& t, Outcomes* outcomes) {
+  if (t.color) return {t.color->width(), t.color->height(), t, outcomes};
+  if (t.depth) return {t.depth->width(), t.depth->height(), t, outcomes};
+  return {t.stencil->width(), t.stencil->height(), t, outcomes};
+}
+
+void count(Outcome outcome, Outcomes& outcomes) {
+  switch (outcome) {
+    case Outcome::stencil_fail:
+      ++outcomes.stencil_fail;
+      return;
+    case Outcome::depth_fail:
+      ++outcomes.depth_fail;
+      return;
+    case Outcome::pass:
+      ++outcomes.pass;
+  }
 }
 
 bool inside(const std::optional<Rect>& rect, std::int64_t x, std::int64_t y) {
@@ -209,10 +223,12 @@ void draw_triangle(const Draw& draw, const Target& target, std::array<Vertex, 3>
       if (!on_inner_side(v[0], v[1], cx, cy) || !on_inner_side(v[1], v[2], cx, cy) ||
           !on_inner_side(v[2], v[0], cx, cy))
         continue;
-      process_fragment(draw, target.buffers, {x, y, plane.at(x, y), front}, [&] {
+      const auto color = [&] {
         return shade(draw.shading, interpolate(draw, draw.mesh.indices.data() + first_index,
                                                weights_at(v, area, cx, cy), front));
-      });
+      };
+      count(process_fragment(draw, target.buffers, {x, y, plane.at(x, y), front}, color),
+            *target.outcomes);
     }
 }
 
@@ -274,13 +290,15 @@ void run(const Blit& blit, const Target& target) {
 
 }  // namespace
 
-void execute(const Frame& frame, std::size_t commands) {
+Outcomes execute(const Frame& frame, std::size_t commands) {
+  Outcomes outcomes;
   for (const Pass& pass : frame.passes())
     for (const Command& command : pass.commands) {
-      if (commands-- == 0) return;
-      const Target target = make_target(pass.targets);
+      if (commands-- == 0) return outcomes;
+      const Target target = make_target(pass.targets, &outcomes);
       std::visit([&](const auto& c) { run(c, target); }, command);
     }
+  return outcomes;
 }
 
 }  // namespace gnomon::reference

@@ -5,14 +5,21 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "raster/frame.h"
 
 namespace gnomon::reference {
 
+/// Fragments by where their way ended, of all draws of a frame together. A grid of tests asks
+/// whether it got to each outcome at all.
+struct Outcomes {
+  std::uint64_t stencil_fail = 0, depth_fail = 0, pass = 0;
+};
+
 /// Effect: that of raster::execute, byte for byte.
-void execute(const raster::Frame& frame,
-             std::size_t commands = std::numeric_limits<std::size_t>::max());
+Outcomes execute(const raster::Frame& frame,
+                 std::size_t commands = std::numeric_limits<std::size_t>::max());
 
 }  // namespace gnomon::reference
