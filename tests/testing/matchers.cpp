@@ -70,8 +70,9 @@ class Equals : public ::testing::MatcherInterface<const Buffer&> {
  private:
   void describe(const char* verb, std::ostream& out) const {
     out << verb;
-    if (mask_) out << ", under a mask,";
-    if (units_) out << ", to within " << unit_count() << ",";
+    if (units_) out << ", to within " << unit_count();
+    if (mask_) out << ", under a mask";
+    if (units_ || mask_) out << ',';
     std::string text = ::testing::PrintToString(expected_);
     if (text.back() == '\n') text.pop_back();
     out << " a " << text;
