@@ -190,7 +190,7 @@ json total(const json& rows, const char* plane) {
     pixels += e["pixels"].get<std::uint64_t>();
     beyond += e["beyond_one_unit"].get<std::uint64_t>();
     clamped += e["clamped"].get<std::uint64_t>();
-    sum += e["mean"].get<double>() * e["pixels"].get<double>();
+    sum += e["mean"].get<double>() * (e["pixels"].get<double>() - e["clamped"].get<double>());
     largest = std::max(largest, e["largest"].get<double>());
   }
   return {{"class", "all"},
@@ -198,7 +198,7 @@ json total(const json& rows, const char* plane) {
           {plane,
            {{"pixels", pixels},
             {"largest", largest},
-            {"mean", pixels ? sum / static_cast<double>(pixels) : 0.0},
+            {"mean", pixels > clamped ? sum / static_cast<double>(pixels - clamped) : 0.0},
             {"beyond_one_unit", beyond},
             {"clamped", clamped}}}};
 }
@@ -255,7 +255,9 @@ bool run(const Options& options) {
     if (result["renderer"] != result["version"])
       fmt::print("{}\n", result["version"].get<std::string>());
   }
-  fmt::print("Cells: largest / mean error in units of D24 / share of pixels beyond one unit\n");
+  fmt::print(
+      "Cells: largest / mean error in units of D24 / share of pixels beyond one unit;\n"
+      "the mean leaves out pixels whose exact depth was clamped\n");
   print_table(results, "snapped", "Against the plane through the snapped vertices");
   print_table(results, "unrounded", "Against the plane through the unrounded vertices");
   print_coverage(results);

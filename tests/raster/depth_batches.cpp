@@ -22,8 +22,7 @@ struct Size {
   int width = 1024, height = 1024;
 };
 
-Size size_of(Kind kind, Random& random) {
-  if (kind == Kind::sliver) return random.chance(0.5f) ? Size{2048, 1024} : Size{1024, 2048};
+Size size_of(Kind kind) {
   if (kind == Kind::huge || kind == Kind::huge_perspective) return {8192, 128};
   return {};
 }
@@ -116,22 +115,22 @@ void add_off_grid(Batch& batch, const std::array<Point, 3>& points, double z_lim
   }
 }
 
-/// Slivers side by side, 8 pixels apart, all leaning by the same slope.
+/// Slivers side by side, 6 pixels apart, all leaning by the same slope.
 void add_slivers(Batch& batch, Random& random) {
   const View& view = batch.view;
-  const bool wide = view.width > view.height;
-  const int length = std::max(view.width, view.height), across = std::min(view.width, view.height);
+  const bool wide = random.chance(0.5f);
+  const int length = wide ? view.width : view.height, across = wide ? view.height : view.width;
   const double slope = random.chance(0.2f) ? 0.0 : uniform(random, -0.4, 0.4);
   const double rise = slope * length;
   const auto point = [&](double along, double offset) {
     const double side = offset + slope * along;
     return wide ? Point{along, side} : Point{side, along};
   };
-  for (double base = std::max(0.0, -rise); base + 8.0 <= across - std::max(0.0, rise);
-       base += 8.0) {
+  for (double base = std::max(0.0, -rise); base + 6.0 <= across - std::max(0.0, rise);
+       base += 6.0) {
     const double from = uniform(random, 0.0, length * 0.1);
     const double to = uniform(random, length * 0.9, length);
-    const double a = base + uniform(random, 1.0, 3.0), b = base + uniform(random, 1.0, 3.0);
+    const double a = base + uniform(random, 0.5, 1.5), b = base + uniform(random, 0.5, 1.5);
     const double share = random.chance(0.5f) ? uniform(random, 0.0, 1.0) : 0.0;
     const double width = log_uniform(random, 1.0 / 256.0, 4.0);
     add_on_grid(batch,
@@ -141,13 +140,13 @@ void add_slivers(Batch& batch, Random& random) {
   }
 }
 
-/// From the left end of the target to the right, inside a strip of 4 rows or thinner, across the
+/// From the left end of the target to the right, inside a strip of 2 rows or thinner, across the
 /// centres of a row.
 std::array<Point, 3> across_target(Random& random, int y0, int width) {
-  const double height = log_uniform(random, 1.0 / 256.0, 4.0);
-  const double centers = y0 + random.integer(0, 3) + 0.5;
+  const double height = log_uniform(random, 1.0 / 256.0, 2.0);
+  const double centers = y0 + random.integer(0, 1) + 0.5;
   const double bottom = std::clamp(centers - uniform(random, 0.0, height), static_cast<double>(y0),
-                                   y0 + 4.0 - height);
+                                   y0 + 2.0 - height);
   const auto y = [&] { return bottom + uniform(random, 0.0, height); };
   return {Point{uniform(random, 0.0, width * 0.05), y()},
           Point{uniform(random, width * 0.95, width), y()},
@@ -208,7 +207,7 @@ Batch make_batch(Kind kind, bool offset, std::uint32_t seed) {
   Random random(seed);
   Batch batch;
   View& view = batch.view;
-  const Size size = size_of(kind, random);
+  const Size size = size_of(kind);
   view.width = size.width;
   view.height = size.height;
   if (offset)
@@ -222,29 +221,29 @@ Batch make_batch(Kind kind, bool offset, std::uint32_t seed) {
       cells(8, 8, [&](int x, int y) { add_on_grid(batch, in_cell(random, x, y, 8, 8), random); });
       break;
     case Kind::ordinary:
-      cells(64, 64,
-            [&](int x, int y) { add_on_grid(batch, in_cell(random, x, y, 64, 64), random); });
+      cells(32, 32,
+            [&](int x, int y) { add_on_grid(batch, in_cell(random, x, y, 32, 32), random); });
       break;
     case Kind::sliver:
       add_slivers(batch, random);
       break;
     case Kind::huge:
-      cells(view.width, 4,
+      cells(view.width, 2,
             [&](int, int y) { add_on_grid(batch, across_target(random, y, view.width), random); });
       break;
     case Kind::perspective:
-      cells(64, 64, [&](int x, int y) {
-        add_off_grid(batch, in_cell(random, x, y, 64, 64), 1.0, 1e-3, 1e6, random);
+      cells(32, 32, [&](int x, int y) {
+        add_off_grid(batch, in_cell(random, x, y, 32, 32), 1.0, 1e-3, 1e6, random);
       });
       break;
     case Kind::huge_perspective:
-      cells(view.width, 4, [&](int, int y) {
+      cells(view.width, 2, [&](int, int y) {
         add_off_grid(batch, across_target(random, y, view.width), 1.0, 1e-3, 1e6, random);
       });
       break;
     case Kind::near_far:
-      cells(64, 64, [&](int x, int y) {
-        add_off_grid(batch, in_cell(random, x, y, 64, 64), 3.0, 1e-3, 1e6, random);
+      cells(32, 32, [&](int x, int y) {
+        add_off_grid(batch, in_cell(random, x, y, 32, 32), 3.0, 1e-3, 1e6, random);
       });
       break;
     case Kind::eye_plane:

@@ -1,6 +1,7 @@
 // Seeded triangles that are hard on depth, laid out so that each one's depths can be read back: the
 // triangles of a batch do not overlap, so one frame measures many. Kinds differ in size, in shape
-// and in what is cut. The same seed gives the same batch everywhere.
+// and in what is cut. The same seed gives the same batch wherever the library's exp2 and log2 round
+// alike; sizes are drawn from them.
 #pragma once
 
 #include <array>
@@ -17,13 +18,13 @@ namespace gnomon::depth_batches {
 enum class Kind : std::uint8_t {
   /// A few pixels, on the 1/256 pixel grid; depth may cross the whole range within a pixel.
   tiny,
-  /// Up to 64 pixels, on the grid.
+  /// Up to 32 pixels, on the grid.
   ordinary,
-  /// 1/256 to 4 pixels wide and as long as the target, in every direction, on the grid.
+  /// 1/256 to 4 pixels wide and about 1000 long, lying or standing or leaning, on the grid.
   sliver,
-  /// 8192 pixels wide, 1/256 to 4 pixels high, on the grid.
+  /// 8192 pixels wide, 1/256 to 2 pixels high, on the grid.
   huge,
-  /// Up to 64 pixels, off the grid; the vertices' w from 1e-3 to 1e6.
+  /// Up to 32 pixels, off the grid; the vertices' w from 1e-3 to 1e6.
   perspective,
   /// 8192 pixels wide and off the grid, w as before.
   huge_perspective,

@@ -245,9 +245,11 @@ void Errors::add(std::uint32_t stored, Int128 exact, const Plane& plane) {
   const double error = static_cast<double>(size) / static_cast<double>(plane.one);
   ++pixels;
   beyond_one += size > plane.one;
-  clamped += value != exact;
   largest = std::max(largest, error);
-  sum += error;
+  if (value == exact)
+    unclamped_sum += error;
+  else
+    ++clamped;
 }
 
 void Errors::add(const Errors& other) {
@@ -255,7 +257,7 @@ void Errors::add(const Errors& other) {
   beyond_one += other.beyond_one;
   clamped += other.clamped;
   largest = std::max(largest, other.largest);
-  sum += other.sum;
+  unclamped_sum += other.unclamped_sum;
 }
 
 }  // namespace gnomon::exact_depth

@@ -79,14 +79,17 @@ struct Errors {
   std::uint64_t pixels = 0;
   /// Pixels that are more than one unit off.
   std::uint64_t beyond_one = 0;
-  /// Pixels whose exact depth is one that the clamp moved: most are right to the last bit.
+  /// Pixels whose exact depth the clamp moved. They count for all but the mean, which they would
+  /// flatter.
   std::uint64_t clamped = 0;
-  double largest = 0.0, sum = 0.0;
+  double largest = 0.0, unclamped_sum = 0.0;
 
   /// `exact` is plane.at() of the pixel.
   void add(std::uint32_t stored, Int128 exact, const Plane& plane);
   void add(const Errors& other);
-  double mean() const { return pixels ? sum / static_cast<double>(pixels) : 0.0; }
+  double mean() const {
+    return pixels > clamped ? unclamped_sum / static_cast<double>(pixels - clamped) : 0.0;
+  }
 };
 
 }  // namespace gnomon::exact_depth
