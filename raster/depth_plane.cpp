@@ -12,12 +12,11 @@ namespace {
 Int128 magnitude(Int128 value) { return value < 0 ? -value : value; }
 
 /// factor * largest slope + units, in plane units, to nearest; bounded so that sums with a vertex
-/// depth stay in 64 bits.
-std::int64_t offset_in_plane_units(const PolygonOffset& offset, Int128 largest_slope,
-                                   int fraction_bits) {
+/// depth stay in 64 bits. `slope` is the slope a pixel.
+std::int64_t offset_in_plane_units(const PolygonOffset& offset, double slope, int fraction_bits) {
   const double one_unit = static_cast<double>(std::int64_t{1} << fraction_bits);
-  const double value = static_cast<double>(offset.factor) * static_cast<double>(largest_slope) +
-                       static_cast<double>(offset.units) * one_unit;
+  const double value =
+      static_cast<double>(offset.factor) * slope + static_cast<double>(offset.units) * one_unit;
   const double limit = static_cast<double>(kMaxVertexDepth);
   if (!(value > -limit)) return std::isnan(value) ? 0 : -kMaxVertexDepth;
   return value < limit ? round_to_nearest(value) : kMaxVertexDepth;
@@ -45,15 +44,15 @@ DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::i
   plane.area = area < 0 ? -area : area;
   plane.numerator_x = sign * (dz1 * dy2 - dz2 * dy1);
   plane.numerator_y = sign * (dx1 * dz2 - dx2 * dz1);
-  const Int128 step_x = round_div(plane.numerator_x * 256, plane.area);
-  const Int128 step_y = round_div(plane.numerator_y * 256, plane.area);
-  plane.step_x = static_cast<std::uint64_t>(step_x);
-  plane.step_y = static_cast<std::uint64_t>(step_y);
+  plane.step_x = static_cast<std::uint64_t>(round_div(plane.numerator_x * 256, plane.area));
+  plane.step_y = static_cast<std::uint64_t>(round_div(plane.numerator_y * 256, plane.area));
 
   const int fraction_bits = depth_fraction_bits(format);
   if (offset) {
-    const Int128 largest = std::max(magnitude(step_x), magnitude(step_y));
-    plane.offset = offset_in_plane_units(*offset, largest, fraction_bits);
+    // Not the steps: a large factor would multiply their rounding.
+    const Int128 largest = std::max(magnitude(plane.numerator_x), magnitude(plane.numerator_y));
+    const double slope = static_cast<double>(largest) * 256.0 / static_cast<double>(plane.area);
+    plane.offset = offset_in_plane_units(*offset, slope, fraction_bits);
   }
   const auto [z_min, z_max] = std::minmax({v0.z_fx, v1.z_fx, v2.z_fx});
   plane.narrow = z_min + plane.offset >= static_cast<std::int64_t>(low) << fraction_bits &&

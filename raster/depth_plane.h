@@ -6,8 +6,9 @@
 //   value(x, y) = base + x * step_x + y * step_y,   x, y = 0..63 from the tile's bottom left pixel,
 // with base the exactly rounded rational value at that pixel's centre (polygon offset included) and
 // the steps exactly rounded rational slopes a pixel. The stored depth is floor((value + half a
-// unit) / 2^f). Error: base 2^-9 + 63 (2^-9 + 2^-9) < 0.25 units for D24, so the depth is within
-// one unit of the exactly rounded one. A covered pixel's exact value lies between the vertices', so
+// unit) / 2^f). Error: base 2^-9, steps 63 (2^-9 + 2^-9), offset 2^-9, together 1/4 of a unit for
+// D24 before the last rounding, so the depth is within one unit of the exactly rounded one. A
+// covered pixel's exact value lies between the vertices', so
 // with vertices in [0, 2^(32) - 2^f] value + half a unit stays in 32 bits, and modular 32-bit sums
 // are right whatever the slopes are. Other triangles (depth clamp, offset) use 64 bits.
 #pragma once
@@ -43,6 +44,8 @@ struct DepthPlane {
   std::int64_t area = 1;
   /// Slopes a pixel, exactly rounded, modulo 2^64.
   std::uint64_t step_x = 0, step_y = 0;
+  /// Polygon offset of the exact slopes, to nearest; computed in double, so up to a unit of the
+  /// plane off where it is 2^50 or more, 2^18 depth ranges away.
   std::int64_t offset = 0;
   /// Every covered pixel's value fits 32 bits and needs no clamp.
   bool narrow = true;

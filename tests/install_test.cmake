@@ -13,9 +13,10 @@ file(REMOVE_RECURSE ${work})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${work}/prefix)
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${work}/build -G Ninja -D CMAKE_PREFIX_PATH=${work}/prefix
   -D WITH_AR=${WITH_AR} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${FLAGS}
-  -D CMAKE_BUILD_TYPE=${BUILD_TYPE})
+  -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D EXAMPLE_TEST=${SOURCE_DIR}/../testing/example_test.cpp)
 run(${CMAKE_COMMAND} --build ${work}/build)
 run(${work}/build/use_raster)
+run(${work}/build/use_testing)
 if(WITH_AR)
   run(${work}/build/use_ar)
 endif()

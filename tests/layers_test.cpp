@@ -1,5 +1,6 @@
-// The layers of the project: raster <- pipeline <- ar <- apps, tests, bench. Oracle: the includes
-// that the sources themselves hold, against the rules written here.
+// The layers of the project: raster <- pipeline <- ar <- apps, tests, bench; raster <-
+// tests/testing, the library for the tests of others. Oracle: the includes that the sources
+// themselves hold, against the rules written here.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -29,6 +30,7 @@ const std::map<std::string, Rule>& rules() {
       {"raster", {{"raster"}, {"glm", "hwy", "tbb", "oneapi", "sanitizer"}}},
       {"pipeline",
        {{"raster", "pipeline"}, {"glm", "hwy", "tbb", "oneapi", "embree3", "meshoptimizer.h"}}},
+      {"tests/testing", {{"raster", "testing"}, {"glm", "gmock", "gtest", "raster", "testing"}}},
   };
   return kRules;
 }
@@ -47,7 +49,7 @@ bool is_standard(const std::string& header) {
 std::vector<std::string> violations(const fs::path& root) {
   static const std::regex kInclude(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
   std::vector<std::string> found;
-  for (const auto& folder : {"raster", "pipeline", "ar"}) {
+  for (const auto& folder : {"raster", "pipeline", "ar", "tests/testing"}) {
     if (!fs::exists(root / folder)) continue;
     const auto rule = rules().find(folder);
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
@@ -98,11 +100,15 @@ TEST(Layers, EveryKindOfWrongIncludeIsFound) {
   write("ar/good.cpp", "#include <opencv2/core.hpp>\n#include \"pipeline/scene.h\"\n");
   write("ar/up.cpp", "#include \"apps/commands.h\"\n");
   write("ar/not_from_the_root.cpp", "#include \"image.h\"\n");
-  EXPECT_THAT(violations(root), UnorderedElementsAre("raster/up.h includes pipeline/scene.h",
-                                                     "raster/file.cpp includes opencv2/core.hpp",
-                                                     "pipeline/up.cpp includes ar/image.h",
-                                                     "ar/up.cpp includes apps/commands.h",
-                                                     "ar/not_from_the_root.cpp includes image.h"));
+  write("tests/testing/good.h", "#include <gmock/gmock.h>\n#include \"raster/a.h\"\n");
+  write("tests/testing/up.cpp", "#include \"pipeline/scene.h\"\n");
+  EXPECT_THAT(violations(root),
+              UnorderedElementsAre("raster/up.h includes pipeline/scene.h",
+                                   "raster/file.cpp includes opencv2/core.hpp",
+                                   "pipeline/up.cpp includes ar/image.h",
+                                   "ar/up.cpp includes apps/commands.h",
+                                   "ar/not_from_the_root.cpp includes image.h",
+                                   "tests/testing/up.cpp includes pipeline/scene.h"));
   fs::remove_all(root);
 }
 

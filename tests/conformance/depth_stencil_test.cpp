@@ -4,6 +4,7 @@
 // relations, which the target holds.
 #include <gtest/gtest.h>
 
+#include "every_value.h"
 #include "grid.h"
 #include "raster/random_frames.h"
 #include "shapes.h"
@@ -13,32 +14,6 @@ using namespace gnomon::conformance;
 using gnomon::random_frames::Random;
 
 namespace {
-
-using gnomon::reference::Outcomes;
-
-/// The outcomes of one fragment at middle depth on every stencil value and depth relation.
-Outcomes counted(const State& state, int ref, bool front = true) {
-  Outcomes outcomes;
-  const StencilFace face = front ? state.stencil.value_or(StencilState{}).front
-                                 : state.stencil.value_or(StencilState{}).back;
-  for (int value = 0; value < 256; ++value)
-    for (int stored = -1; stored <= 1; ++stored) {
-      const int clamped = ref < 0 ? 0 : ref > 255 ? 255 : ref;
-      if (!accepts(face.func, clamped & face.read_mask, value & face.read_mask))
-        ++outcomes.stencil_fail;
-      else if (state.depth && !accepts(state.depth->func, 0, stored))
-        ++outcomes.depth_fail;
-      else
-        ++outcomes.pass;
-    }
-  return outcomes;
-}
-
-void expect_same(const Outcomes& got, const Outcomes& wanted, const std::string& name) {
-  EXPECT_EQ(got.stencil_fail, wanted.stencil_fail) << name;
-  EXPECT_EQ(got.depth_fail, wanted.depth_fail) << name;
-  EXPECT_EQ(got.pass, wanted.pass) << name;
-}
 
 /// A face that leaves another value for each outcome.
 StencilFace telling(CompareFunc func) {
@@ -93,17 +68,15 @@ TEST(DepthStencil, EveryPairOfFunctionsEndsEachFragmentWhereItMust) {
         if (d < kFuncs.size()) state.depth = DepthState{kFuncs[d], true};
         const std::string name =
             text(format) + " stencil " + std::to_string(s) + " depth " + std::to_string(d);
-        Buffers every(kEveryValue, format);
-        prepare_every_value(every, middle_depth(format));
+        const Buffers every = every_value(kEveryValue, format);
         const auto record = [&](Frame& frame, Buffers&) {
           record_draw(frame, {.state = state, .stencil_ref = 100}, {full_quad()});
         };
         const Expected expected = grid.check(name, every, record);
-        expect_same(expected.outcomes, counted(state, 100), name);
+        expect_same(expected.outcomes, counted_outcomes(state, 100, true), name);
 
         for (const Size size : kSizes) {
-          Buffers buffers(size, format);
-          prepare_every_value(buffers, middle_depth(format));
+          const Buffers buffers = every_value(size, format);
           grid.check(name + " " + text(size), buffers, [&](Frame& frame, Buffers&) {
             record_quads(frame, state, 100, size, static_cast<std::uint32_t>(9 * s + d));
           });
@@ -121,12 +94,11 @@ TEST(DepthStencil, EveryTripleOfOperationsIsReachedOnEveryValue) {
         const State state{.depth = DepthState{CompareFunc::less, true},
                           .stencil = StencilState::both(face)};
         const std::string name = text(fail) + " " + text(depth_fail) + " " + text(pass);
-        Buffers every(kEveryValue);
-        prepare_every_value(every, middle_depth(DepthFormat::d24));
+        const Buffers every = every_value(kEveryValue, DepthFormat::d24);
         const Expected expected = grid.check(name, every, [&](Frame& frame, Buffers&) {
           record_draw(frame, {.state = state, .stencil_ref = 77}, {full_quad()});
         });
-        expect_same(expected.outcomes, counted(state, 77), name);
+        expect_same(expected.outcomes, counted_outcomes(state, 77, true), name);
         EXPECT_GT(expected.outcomes.stencil_fail, 0u) << name;
         EXPECT_GT(expected.outcomes.depth_fail, 0u) << name;
         EXPECT_GT(expected.outcomes.pass, 0u) << name;
@@ -141,8 +113,8 @@ TEST(DepthStencil, EveryWriteMaskKeepsItsBits) {
                              .depth_fail = StencilOp::invert,
                              .pass = StencilOp::invert};
       const std::string name = "mask " + std::to_string(mask);
-      Buffers every(kEveryValue, depth_write ? DepthFormat::d24 : DepthFormat::d16);
-      prepare_every_value(every, middle_depth(every.depth.format()));
+      const Buffers every =
+          every_value(kEveryValue, depth_write ? DepthFormat::d24 : DepthFormat::d16);
       const Expected expected = grid.check(name, every, [&](Frame& frame, Buffers&) {
         record_draw(frame,
                     {.state = {.depth = DepthState{CompareFunc::less, depth_write},
@@ -173,22 +145,20 @@ TEST(DepthStencil, RandomStatesWithReferencesAndMasksOutOfRange) {
       const int ref = random.integer(-2, 260);
       const std::string name = std::to_string(group) + "." + std::to_string(index);
       const DepthFormat format = index % 2 ? DepthFormat::d16 : DepthFormat::d24;
-      Buffers every(kEveryValue, format);
-      prepare_every_value(every, middle_depth(format));
+      const Buffers every = every_value(kEveryValue, format);
       for (const bool front : {true, false}) {
         const Expected expected = grid.check(name, every, [&](Frame& frame, Buffers&) {
           record_draw(frame, {.state = state, .stencil_ref = ref},
                       {front ? full_quad() : reversed(full_quad())});
         });
-        const Outcomes wanted = counted(state, ref, front);
+        const gnomon::reference::Outcomes wanted = counted_outcomes(state, ref, front);
         expect_same(expected.outcomes, wanted, name);
         reached[0] += wanted.stencil_fail > 0;
         reached[1] += wanted.depth_fail > 0;
         reached[2] += wanted.pass > 0;
       }
       for (const Size size : kSizes) {
-        Buffers buffers(size, format);
-        prepare_every_value(buffers, middle_depth(format));
+        const Buffers buffers = every_value(size, format);
         grid.check(
             name + " " + text(size), buffers,
             [&](Frame& frame, Buffers&) {

@@ -64,17 +64,4 @@ std::vector<glm::vec4> reversed(std::vector<glm::vec4> triangles) {
   return triangles;
 }
 
-std::uint32_t middle_depth(DepthFormat format) {
-  return format == DepthFormat::d24 ? 0x800000u : 0x8000u;
-}
-
-void prepare_every_value(Buffers& buffers, std::uint32_t depth) {
-  for (int y = 0; y < buffers.height(); ++y)
-    for (int x = 0; x < buffers.width(); ++x) {
-      const int i = y * buffers.width() + x;
-      buffers.stencil.plane().at(x, y) = static_cast<std::uint8_t>(i % 256);
-      buffers.depth.plane().at(x, y) = depth + static_cast<std::uint32_t>(i / 256 % 3) - 1u;
-    }
-}
-
 }  // namespace gnomon::conformance

@@ -30,13 +30,6 @@ std::string text(raster::StencilOp op);
 std::string text(raster::DepthFormat format);
 std::string text(Size size);
 
-/// "a func b" by the three relations that each function accepts: their bits are the function's
-/// number in OpenGL's order (less 1, equal 2, greater 4).
-template <class T>
-bool accepts(raster::CompareFunc func, T a, T b) {
-  return (static_cast<int>(func) >> (a < b ? 0 : a == b ? 1 : 2) & 1) != 0;
-}
-
 /// A mesh of triangles, three vertices each. Attributes are empty or one a vertex.
 struct Triangles {
   std::vector<glm::vec4> positions;
@@ -59,13 +52,5 @@ std::vector<glm::vec4> quad(double x0, double y0, double x1, double y1, Size siz
 std::vector<glm::vec4> full_quad(float z_ndc = 0.0f);
 /// The same triangles wound the other way round.
 std::vector<glm::vec4> reversed(std::vector<glm::vec4> triangles);
-
-/// What full_quad(0) stores: half the largest depth, a half rounded upwards.
-std::uint32_t middle_depth(raster::DepthFormat format);
-
-/// Pixel i (row after row) gets stencil value i mod 256 and a depth one below, at or one above
-/// `depth`, by (i / 256) mod 3: a target of 48x16 holds every value with every relation once.
-void prepare_every_value(Buffers& buffers, std::uint32_t depth);
-inline constexpr Size kEveryValue{48, 16};
 
 }  // namespace gnomon::conformance

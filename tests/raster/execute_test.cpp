@@ -4,8 +4,6 @@
 
 #include <array>
 
-#include "random_frames.h"
-
 using namespace gnomon::raster;
 
 namespace {
@@ -46,17 +44,4 @@ TEST(Execute, RunsOnlyTheFirstCommands) {  // oracle: closed form
   EXPECT_EQ(stencil.at(2, 2), 1);
   execute(frame);
   EXPECT_EQ(stencil.at(2, 2), 2);
-}
-
-TEST(Execute, InPartsLeavesTheBytesOfTheWhole) {  // oracle: the same frame in one go
-  using namespace gnomon::random_frames;
-  for (std::uint32_t seed = 500; seed < 520; ++seed) {
-    gnomon::random_frames::Targets whole(70, 66, ColorFormat::rgba8, DepthFormat::d24);
-    gnomon::random_frames::Targets parts(70, 66, ColorFormat::rgba8, DepthFormat::d24);
-    execute(random_frame(seed, 30, whole));
-    const Frame frame = random_frame(seed, 30, parts);
-    for (std::size_t first = 0; first < frame.command_count(); first += 7)
-      execute(frame, {.first_command = first, .commands = first + 7});
-    EXPECT_EQ(parts.bytes(), whole.bytes()) << "seed " << seed;
-  }
 }

@@ -9,49 +9,11 @@
 
 #include "random_frames.h"
 #include "raster/execute.h"
+#include "small_frames.h"
 
 using namespace gnomon::raster;
+using namespace gnomon::small_frames;
 using gnomon::random_frames::Random;
-
-namespace {
-
-/// A clip-space position at window coordinates (x, y) of a width x height target, depth z in [0,
-/// 1].
-glm::vec4 at_window(double x, double y, int width, int height, double z = 0.5) {
-  return {static_cast<float>(2.0 * x / width - 1.0), static_cast<float>(2.0 * y / height - 1.0),
-          static_cast<float>(2.0 * z - 1.0), 1.0f};
-}
-
-State counting() {
-  StencilFace face;
-  face.pass = StencilOp::incr_wrap;
-  return {.stencil = StencilState::both(face), .color = ColorState::off()};
-}
-
-State signed_counting() {
-  State state = counting();
-  state.stencil->back.pass = StencilOp::decr_wrap;
-  return state;
-}
-
-void draw_positions(Frame& frame, const State& state, std::vector<glm::vec4> positions,
-                    int ref = 0) {
-  auto kept = std::make_shared<std::pair<std::vector<glm::vec4>, std::vector<std::uint32_t>>>();
-  kept->first = std::move(positions);
-  for (std::uint32_t i = 0; i < kept->first.size(); ++i) kept->second.push_back(i);
-  frame.keep(kept);
-  frame.draw({.state = state,
-              .mesh = {.positions = kept->first, .indices = kept->second},
-              .stencil_ref = ref});
-}
-
-int total(const StencilBuffer& stencil) {
-  int sum = 0;
-  for (const std::uint8_t s : stencil.to_rows()) sum += s;
-  return sum;
-}
-
-}  // namespace
 
 TEST(Coverage, TiesGoToLeftAndBottomEdges) {
   StencilBuffer stencil(8, 8);
@@ -64,115 +26,6 @@ TEST(Coverage, TiesGoToLeftAndBottomEdges) {
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x)
       EXPECT_EQ(stencil.at(x, y), x >= 1 && x <= 4 && y >= 1 && y <= 4) << x << ' ' << y;
-}
-
-TEST(Coverage, AFanOfSharedEdgesCoversEachPixelOnce) {
-  Random random(5);
-  for (int round = 0; round < 50; ++round) {
-    StencilBuffer stencil(90, 70);
-    Frame frame;
-    frame.begin_pass("fan", {.stencil = &stencil});
-    // The hub lies anywhere inside; the rim is the target's own border, so every pixel is covered.
-    const double x = random.integer(0, 90 * 256) / 256.0, y = random.integer(0, 70 * 256) / 256.0;
-    std::vector<glm::vec4> rim;
-    for (int i = 0; i < 9; ++i) rim.push_back(at_window(10.0 * i, 0, 90, 70));
-    for (int i = 0; i < 7; ++i) rim.push_back(at_window(90, 10.0 * i, 90, 70));
-    for (int i = 9; i > 0; --i) rim.push_back(at_window(10.0 * i, 70, 90, 70));
-    for (int i = 7; i > 0; --i) rim.push_back(at_window(0, 10.0 * i, 90, 70));
-    std::vector<glm::vec4> triangles;
-    for (std::size_t i = 0; i < rim.size(); ++i)
-      for (const glm::vec4& v : {at_window(x, y, 90, 70), rim[i], rim[(i + 1) % rim.size()]})
-        triangles.push_back(v);
-    draw_positions(frame, counting(), triangles);
-    execute(frame);
-    for (const std::uint8_t s : stencil.to_rows()) ASSERT_EQ(s, 1) << "round " << round;
-  }
-}
-
-TEST(Coverage, AClosedSurfaceCountsTheSameAtEveryPixelHoweverItIsCut) {
-  // Invariant: without a depth test every line of sight leaves the surface as often as it enters,
-  // once more if the eye is inside.
-  int enclosing = 0;
-  Random random(17);
-  for (int round = 0; round < 300; ++round) {
-    StencilBuffer stencil(64, 48);
-    Frame frame;
-    frame.begin_pass("tetrahedron", {.stencil = &stencil});
-    std::array<glm::vec4, 4> v;
-    for (glm::vec4& p : v) {
-      // Some vertices behind the eye or at infinity: the surface is cut by w > 0 and the guard band
-      // only.
-      const float w = random.chance(0.2f) ? 0.0f : random.real(-1.0f, 2.0f);
-      const float x = random.real(-3.0f, 3.0f), y = random.real(-3.0f, 3.0f);
-      p = {x, y, random.real(-3.0f, 3.0f), w};
-    }
-    State state = signed_counting();
-    state.depth_clamp = true;
-    draw_positions(frame, state,
-                   {v[0], v[1], v[2], v[0], v[2], v[3], v[0], v[3], v[1], v[1], v[3], v[2]});
-    execute(frame);
-    const int count = stencil.at(0, 0);
-    ASSERT_TRUE(count == 0 || count == 1 || count == 255) << "round " << round;
-    for (const std::uint8_t s : stencil.to_rows()) ASSERT_EQ(s, count) << "round " << round;
-    enclosing += count != 0;
-  }
-  EXPECT_GT(enclosing, 5);
-  EXPECT_LT(enclosing, 150);
-}
-
-TEST(Coverage, MovingByWholePixelsMovesThePicture) {
-  Random random(3);
-  StencilBuffer here(200, 150), there(200, 150);
-  std::vector<glm::vec4> a, b;
-  for (int i = 0; i < 90; ++i) {
-    const double x = random.integer(0, 100 * 256) / 256.0, y = random.integer(0, 80 * 256) / 256.0;
-    a.push_back(at_window(x, y, 200, 150));
-    b.push_back(at_window(x + 67, y + 35, 200, 150));
-  }
-  Frame frame;
-  frame.begin_pass("here", {.stencil = &here});
-  draw_positions(frame, signed_counting(), a);
-  frame.begin_pass("there", {.stencil = &there});
-  draw_positions(frame, signed_counting(), b);
-  execute(frame);
-  for (int y = 0; y < 150; ++y)
-    for (int x = 0; x < 200; ++x) {
-      const bool inside = x >= 67 && y >= 35;
-      ASSERT_EQ(there.at(x, y), inside ? here.at(x - 67, y - 35) : 0);
-    }
-  EXPECT_GT(total(here), 0);
-}
-
-TEST(Depth, EqualRedrawsExactlyTheVisibleFragments) {
-  Random random(11);
-  ColorBuffer color(120, 90);
-  DepthBuffer depth(120, 90);
-  StencilBuffer stencil(120, 90);
-  std::vector<glm::vec4> triangles;
-  for (int i = 0; i < 120; ++i) {
-    const float w = random.real(0.2f, 3.0f);
-    const float x = random.real(-1.5f, 1.5f), y = random.real(-1.5f, 1.5f);
-    triangles.push_back({x * w, y * w, random.real(-1.1f, 1.1f) * w, w});
-  }
-  Frame frame;
-  frame.begin_pass("depth", {&color, &depth, &stencil});
-  State first = counting();
-  first.stencil->front.pass = first.stencil->back.pass = StencilOp::replace;
-  first.depth = DepthState{};
-  draw_positions(frame, first, triangles, 7);
-  State second = counting();
-  second.depth = DepthState{CompareFunc::equal, false};
-  draw_positions(frame, second, triangles);
-  execute(frame);
-  int hit = 0;
-  for (int y = 0; y < 90; ++y)
-    for (int x = 0; x < 120; ++x) {
-      const int s = stencil.at(x, y);
-      // Covered pixels hold 7 and at least one equal fragment; others are untouched.
-      ASSERT_TRUE(s == 0 || s >= 8) << s;
-      hit += s != 0;
-    }
-  EXPECT_GT(hit, 1000);
 }
 
 TEST(Depth, StaysWithinOneUnitOfTheExactPlane) {

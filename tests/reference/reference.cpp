@@ -172,8 +172,9 @@ class Plane {
  private:
   Wide offset(const PolygonOffset& o) const {
     const auto size = [](Wide v) { return v < 0 ? -v : v; };
-    const Wide largest = std::max(size(slope_x_), size(slope_y_));
-    const double value = static_cast<double>(o.factor) * static_cast<double>(largest) +
+    const double slope = static_cast<double>(std::max(size(rise_x_), size(rise_y_))) * 256.0 /
+                         static_cast<double>(area_);
+    const double value = static_cast<double>(o.factor) * slope +
                          static_cast<double>(o.units) * static_cast<double>(1 << bits_);
     const double limit = 1152921504606846976.0;
     return std::isnan(value) ? 0 : nearest_even(std::clamp(value, -limit, limit));

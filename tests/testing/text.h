@@ -1,0 +1,39 @@
+// Stencil counts as text, the way one sees them: the top row first, one character a pixel.
+//
+//   .        0
+//   1 to 9   1 to 9
+//   a to z   10 to 35
+//   A to Z   -1 to -26, counts that wrapped below zero: A is 255, B is 254, Z is 230
+//   #        36 to 229; written but never read, because it names no one value
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+
+#include "raster/buffers.h"
+
+namespace gnomon::testing {
+
+/// The buffer's rows, each ended by a newline.
+std::string to_text(const raster::StencilBuffer& stencil);
+
+/// The buffer that a text shows. Spaces, tabs and empty lines do not count, so a raw string may be
+/// indented. Throws std::invalid_argument that names the place if a character stands for no value,
+/// rows differ in length, or there is no pixel.
+raster::StencilBuffer stencil_of(std::string_view text);
+
+/// The character of one value.
+char glyph(std::uint8_t value);
+
+}  // namespace gnomon::testing
+
+namespace gnomon::raster {
+
+/// What GoogleTest prints: size, format and range of values; of a stencil buffer of up to 64x32
+/// pixels also the counts.
+void PrintTo(const StencilBuffer& stencil, std::ostream* out);
+void PrintTo(const DepthBuffer& depth, std::ostream* out);
+void PrintTo(const ColorBuffer& color, std::ostream* out);
+
+}  // namespace gnomon::raster
