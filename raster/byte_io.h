@@ -17,6 +17,10 @@ namespace gnomon::raster {
 class ByteWriter {
  public:
   void u8(std::uint8_t value) { bytes_.push_back(value); }
+  void u16(std::uint16_t value) {
+    u8(static_cast<std::uint8_t>(value));
+    u8(static_cast<std::uint8_t>(value >> 8));
+  }
   void u32(std::uint32_t value) {
     for (int shift = 0; shift < 32; shift += 8)
       bytes_.push_back(static_cast<std::uint8_t>(value >> shift));
@@ -49,6 +53,10 @@ class ByteReader {
     return found;
   }
   std::uint8_t u8(std::string_view what) { return bytes(1, what)[0]; }
+  std::uint16_t u16(std::string_view what) {
+    const auto b = bytes(2, what);
+    return static_cast<std::uint16_t>(b[0] | b[1] << 8);
+  }
   std::uint32_t u32(std::string_view what) {
     const auto b = bytes(4, what);
     return std::uint32_t{b[0]} | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 |

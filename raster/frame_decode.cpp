@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <memory>
-#include <type_traits>
 
 #include <glm/gtc/type_ptr.hpp>
 
@@ -206,30 +205,35 @@ class Decoder {
       out_.buffers.emplace_back(std::in_place_type<StencilBuffer>, w, h);
   }
 
-  template <class T>
-  void elements(std::uint32_t count) {
-    ByteReader data(in_.bytes(std::uint64_t{count} * sizeof(T), "an array"));
+  template <class T, class Read>
+  void elements(std::uint32_t count, std::size_t element_bytes, Read read) {
+    ByteReader data(in_.bytes(std::uint64_t{count} * element_bytes, "an array"));
     std::vector<T> values(count);
-    for (T& value : values) {
-      if constexpr (std::is_integral_v<T>)
-        value = data.u32({});
-      else
-        for (int i = 0; i < T::length(); ++i) value[i] = data.f32({});
-    }
+    for (T& value : values) read(data, value);
     store_->arrays.emplace_back(std::move(values));
   }
+  template <class T>
+  void vectors(std::uint32_t count) {
+    elements<T>(count, sizeof(T), [](ByteReader& data, T& vector) {
+      for (int i = 0; i < T::length(); ++i) vector[i] = data.f32({});
+    });
+  }
   void array() {
-    const auto type = static_cast<ArrayType>(number("an array's type", 4));
+    const auto type = static_cast<ArrayType>(number("an array's type", 5));
     const std::uint32_t count = in_.u32("an array's length");
     switch (type) {
       case ArrayType::vec2:
-        return elements<glm::vec2>(count);
+        return vectors<glm::vec2>(count);
       case ArrayType::vec3:
-        return elements<glm::vec3>(count);
+        return vectors<glm::vec3>(count);
       case ArrayType::vec4:
-        return elements<glm::vec4>(count);
-      case ArrayType::index:
-        return elements<std::uint32_t>(count);
+        return vectors<glm::vec4>(count);
+      case ArrayType::index16:
+        return elements<std::uint32_t>(
+            count, 2, [](ByteReader& data, std::uint32_t& index) { index = data.u16({}); });
+      case ArrayType::index32:
+        return elements<std::uint32_t>(
+            count, 4, [](ByteReader& data, std::uint32_t& index) { index = data.u32({}); });
     }
   }
 

@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <map>
-#include <type_traits>
 
 #include <glm/gtc/type_ptr.hpp>
 
@@ -38,18 +38,30 @@ class Table {
   std::vector<const std::string*> order_;
 };
 
-void put(ByteWriter& out, std::uint32_t value) { out.u32(value); }
-
-template <class T>
-requires(!std::is_integral_v<T>) void put(ByteWriter& out, const T& vector) {
-  for (int i = 0; i < T::length(); ++i) out.f32(vector[i]);
+std::vector<std::uint8_t> array_entry(std::span<const std::uint32_t> indices) {
+  const bool narrow = std::ranges::all_of(indices, [](std::uint32_t i) { return i <= 0xffff; });
+  ByteWriter entry;
+  entry.u8(static_cast<std::uint8_t>(narrow ? ArrayType::index16 : ArrayType::index32));
+  entry.u32(checked_count(indices.size()));
+  for (const std::uint32_t index : indices) {
+    if (narrow)
+      entry.u16(static_cast<std::uint16_t>(index));
+    else
+      entry.u32(index);
+  }
+  return entry.take();
 }
 
-template <class T>
-constexpr ArrayType kArrayType = std::is_same_v<T, glm::vec2>   ? ArrayType::vec2
-                                 : std::is_same_v<T, glm::vec3> ? ArrayType::vec3
-                                 : std::is_same_v<T, glm::vec4> ? ArrayType::vec4
-                                                                : ArrayType::index;
+template <glm::length_t kLength>
+std::vector<std::uint8_t> array_entry(std::span<const glm::vec<kLength, float>> vectors) {
+  constexpr ArrayType kTypes[] = {ArrayType::vec2, ArrayType::vec3, ArrayType::vec4};
+  ByteWriter entry;
+  entry.u8(static_cast<std::uint8_t>(kTypes[kLength - 2]));
+  entry.u32(checked_count(vectors.size()));
+  for (const auto& vector : vectors)
+    for (glm::length_t i = 0; i < kLength; ++i) entry.f32(vector[i]);
+  return entry.take();
+}
 
 BufferKind kind_of(const ColorBuffer&) { return BufferKind::color; }
 BufferKind kind_of(const DepthBuffer&) { return BufferKind::depth; }
@@ -123,12 +135,7 @@ class Encoder {
   }
   template <class T>
   void array(std::string_view, std::span<const T> values) {
-    if (values.empty()) return body_.u32(kNone);
-    ByteWriter entry;
-    entry.u8(static_cast<std::uint8_t>(kArrayType<T>));
-    entry.u32(checked_count(values.size()));
-    for (const T& value : values) put(entry, value);
-    body_.u32(arrays_.index_of(entry.take()));
+    body_.u32(values.empty() ? kNone : arrays_.index_of(array_entry(values)));
   }
   void texture(std::string_view, const std::shared_ptr<const Texture>& texture) {
     if (!texture) return body_.u32(kNone);

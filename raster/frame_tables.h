@@ -12,6 +12,7 @@ inline constexpr std::uint32_t kFrameVersion = 1;
 inline constexpr std::uint32_t kNone = 0xffffffff;
 
 enum class BufferKind : std::uint8_t { color, depth, stencil };
-enum class ArrayType : std::uint8_t { vec2, vec3, vec4, index };
+/// Indices are written in two bytes each where all of them fit.
+enum class ArrayType : std::uint8_t { vec2, vec3, vec4, index16, index32 };
 
 }  // namespace gnomon::raster
