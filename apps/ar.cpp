@@ -18,8 +18,10 @@ void run(ArArguments& arguments) {
   if (arguments.method == "zfail") arguments.session.method = pipeline::VolumeMethod::zfail;
   if (arguments.method == "auto") arguments.session.method = pipeline::VolumeMethod::automatic;
   arguments.session.steps = arguments.steps;
+  arguments.session.frame = !arguments.save_frame.empty();
   if (!arguments.image.empty()) return run_still(arguments);
   if (arguments.steps) throw ar::InputError("ar: --steps goes with --image");
+  if (!arguments.save_frame.empty()) throw ar::InputError("ar: --save-frame goes with --image");
   run_video(arguments);
 }
 
@@ -37,6 +39,8 @@ void add_ar(CLI::App& program) {
   command->add_option("--out", arguments->out, "Folder for the results")->required();
   command->add_flag("--steps", arguments->steps,
                     "Also write colour, depth and stencil after every pass (photograph only)");
+  command->add_option("--save-frame", arguments->save_frame,
+                      "Also write the recorded frame here, for gnomon replay (photograph only)");
   command->add_flag(
       "--json", arguments->as_json,
       "One line of JSON: tags, poses, passes, milliseconds a stage (video: a line a frame)");

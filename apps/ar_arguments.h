@@ -9,7 +9,7 @@
 namespace gnomon::apps {
 
 struct ArArguments {
-  std::filesystem::path scene, image, video, out;
+  std::filesystem::path scene, image, video, out, save_frame;
   int camera = -1;
   bool steps = false, as_json = false;
   std::string method;

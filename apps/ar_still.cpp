@@ -8,6 +8,7 @@
 #include "apps/ar_json.h"
 #include "apps/output_folder.h"
 #include "ar/error.h"
+#include "ar/file.h"
 #include "ar/image_file.h"
 
 namespace gnomon::apps {
@@ -56,6 +57,8 @@ void run_still(const ArArguments& arguments) {
   const ar::Image picture = ar::read_image_rgb(arguments.image);
   check_folder(arguments.out);
   refuse_to_replace(arguments.image, arguments.out / "composite.png");
+  refuse_to_replace(arguments.image, arguments.save_frame);
+  refuse_to_replace(arguments.scene, arguments.save_frame);
   ar::Session session(scene, picture.width, picture.height, arguments.session);
   for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
   const ar::SessionResult result = session.process(picture, 0.0);
@@ -72,6 +75,9 @@ void run_still(const ArArguments& arguments) {
   ar::write_png(arguments.out / "object_mask.png", augmented.object_mask);
   ar::write_png(arguments.out / "stencil_counts.png", augmented.stencil_counts);
   if (arguments.steps) write_steps(arguments.out, augmented.steps);
+  if (!arguments.save_frame.empty())
+    ar::write_file(arguments.save_frame,
+                   {reinterpret_cast<const char*>(augmented.frame.data()), augmented.frame.size()});
 
   if (arguments.as_json) {
     const json line = {{"image", arguments.image.string()},

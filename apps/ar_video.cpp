@@ -3,11 +3,11 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "apps/ar_arguments.h"
 #include "apps/ar_json.h"
 #include "apps/output_folder.h"
+#include "apps/progress.h"
 #include "ar/video.h"
 
 namespace gnomon::apps {
@@ -16,30 +16,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 namespace {
-
-/// Frames done and to do, on a terminal's last line only.
-class Progress {
- public:
-  explicit Progress(std::optional<std::int64_t> total) : total_(total), shown_(isatty(2) == 1) {}
-  ~Progress() {
-    if (shown_) std::cerr << "\r\033[K";
-  }
-  void show(std::int64_t done) const {
-    if (!shown_) return;
-    if (!total_ || *total_ <= 0) {
-      std::cerr << "\rframe " << done << std::flush;
-      return;
-    }
-    constexpr int kWidth = 40;
-    const int filled = static_cast<int>(std::min<std::int64_t>(kWidth, done * kWidth / *total_));
-    std::cerr << fmt::format("\r[{:<{}}] {}/{}", std::string(filled, '#'), kWidth, done, *total_)
-              << std::flush;
-  }
-
- private:
-  std::optional<std::int64_t> total_;
-  bool shown_;
-};
 
 struct VideoSummary {
   std::int64_t frames = 0, augmented = 0, without_pose = 0, held = 0, missing = 0;
@@ -81,7 +57,7 @@ void run_video(const ArArguments& arguments) {
     std::optional<std::int64_t> total = reader.promised_frames();
     if (arguments.frames > 0)
       total = std::min<std::int64_t>(total.value_or(arguments.frames), arguments.frames);
-    const Progress progress(total);
+    const Progress progress("frame", total);
     while (arguments.frames == 0 || summary.frames < arguments.frames) {
       const std::optional<ar::VideoFrame> frame = reader.next();
       if (!frame) break;

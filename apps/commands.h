@@ -14,4 +14,10 @@ void add_ar(CLI::App& program);
 /// gnomon compare A B: how much two pictures differ.
 void add_compare(CLI::App& program);
 
+/// gnomon golden --verify: do the golden frames have their bytes on this machine?
+void add_golden(CLI::App& program);
+
+/// gnomon replay FRAME: a recorded frame executed anew.
+void add_replay(CLI::App& program);
+
 }  // namespace gnomon::apps

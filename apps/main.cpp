@@ -37,9 +37,13 @@ int run(int argc, char** argv) {
       "Examples:\n"
       "  gnomon ar scene.toml --image photograph.png --out out --steps\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
+      "  gnomon replay recorded.frame --out out\n"
+      "  gnomon golden --verify\n"
       "  gnomon COMMAND --help");
   gnomon::apps::add_ar(program);
   gnomon::apps::add_compare(program);
+  gnomon::apps::add_golden(program);
+  gnomon::apps::add_replay(program);
 
   try {
     program.parse(argc, argv);

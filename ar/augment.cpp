@@ -6,6 +6,7 @@
 #include "ar/false_color.h"
 #include "pipeline/light_samples.h"
 #include "raster/execute.h"
+#include "raster/frame_format.h"
 
 namespace gnomon::ar {
 
@@ -134,6 +135,7 @@ Augmented Augmenter::augment(const Image& photograph, const pipeline::Scene& sce
   method.topologies = &at.topologies;
   const raster::Frame frame =
       pipeline::record_haller(scene, camera, picture, at.targets(scene), method);
+  if (at.options.frame) out.frame = raster::encode_frame(frame);
   out.record_ms = watch.lap_ms();
 
   at.execute(frame, out);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,8 @@ struct AugmentOptions {
   bool masks = true;
   /// Also keep the buffers after every pass.
   bool steps = false;
+  /// Also keep the recorded frame's bytes.
+  bool frame = false;
 };
 
 /// The buffers after a pass, in the photograph's geometry.
@@ -54,6 +57,8 @@ struct Augmented {
   Image stencil_counts;
   std::vector<PassPictures> steps;
   std::vector<PassNote> passes;
+  /// As encode_frame writes it (docs/frame-format.md). Empty unless asked for.
+  std::vector<std::uint8_t> frame;
   double resample_ms = 0.0, record_ms = 0.0, execute_ms = 0.0, composite_ms = 0.0;
 };
 

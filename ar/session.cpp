@@ -43,6 +43,7 @@ AugmentOptions augment_options(const SceneFile& file, const SessionOptions& opti
   out.far_m = file.far_m;
   out.masks = options.masks;
   out.steps = options.steps;
+  out.frame = options.frame;
   return out;
 }
 

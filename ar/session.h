@@ -23,7 +23,7 @@ struct SessionOptions {
   bool double_shadows = false;
   /// As in AugmentOptions.
   int samples = 0, threads = 0;
-  bool masks = true, steps = false;
+  bool masks = true, steps = false, frame = false;
   /// Poses as measured, whatever the scene file says.
   bool no_filter = false;
 };

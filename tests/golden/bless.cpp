@@ -6,56 +6,69 @@
 
 #include <fmt/format.h>
 
+#include "ar/buffer_picture.h"
+#include "ar/file.h"
 #include "ar/image_file.h"
 #include "golden/manifest.h"
-#include "golden/pictures.h"
+#include "golden/scenes.h"
 #include "reference/reference.h"
 
 namespace gnomon::golden {
 namespace {
 
+const std::filesystem::path kFolder = GNOMON_SOURCE_DIR "/golden";
+
 struct KeptPicture {
   const char *scene, *file;
-  ar::Image (*picture)(const Targets&);
+  /// Of the buffers, in the frame file's order.
+  std::size_t buffer;
 };
 
 /// Pictures for people; no test reads them.
 constexpr KeptPicture kKept[] = {
-    {"desk-01-automatic", "desk-01.png", color_picture},
-    {"desk-04-automatic", "desk-04.png", color_picture},
-    {"desk-04-counts", "desk-04-counts.png", stencil_picture},
+    {"desk-01-automatic", "desk-01.png", 0},
+    {"desk-04-automatic", "desk-04.png", 0},
+    {"desk-04-counts", "desk-04-counts.png", 2},
 };
 
-std::map<std::string, Entry> manifest_or_none() {
-  if (!std::filesystem::exists(golden_folder() / "manifest.json")) return {};
-  return read_manifest();
+void write_bytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
+  ar::write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+Manifest manifest_or_none() {
+  if (!std::filesystem::exists(manifest_path(kFolder))) return {};
+  return read_manifest(kFolder);
 }
 
 void bless_all() {
-  const std::map<std::string, Entry> before = manifest_or_none();
-  std::map<std::string, Entry> after;
-  std::map<std::string, ar::Image> pictures;
-  std::size_t changed = 0;
+  const Manifest before = manifest_or_none();
+  Manifest after;
+  std::size_t changed = 0, frame_bytes = 0;
+  std::filesystem::create_directories(frame_path(kFolder, "").parent_path());
   for (const Scene& scene : scenes()) {
     const auto start = std::chrono::steady_clock::now();
-    Targets targets = scene.make_targets();
-    const raster::Frame frame = scene.record(targets);
-    reference::execute(frame, scene.commands(frame));
-    const Entry& entry = after[scene.name] = entry_of(targets);
+    const raster::RecordedFrame recorded = scene.record();
+    const std::vector<std::uint8_t> bytes = raster::encode_frame(recorded.frame);
+    const raster::RecordedFrame replayed = raster::decode_frame(bytes);
+    const std::size_t commands = scene.commands(recorded.frame);
+    reference::execute(replayed.frame, commands);
+    const Entry& entry = after[scene.name] = {scene.frame_name(), commands, hashes_of(replayed)};
+    if (scene.frame_of.empty()) write_bytes(frame_path(kFolder, scene.name), bytes);
     for (const KeptPicture& kept : kKept)
-      if (scene.name == kept.scene) pictures[kept.file] = kept.picture(targets);
+      if (scene.name == kept.scene)
+        ar::write_png(kFolder / kept.file, ar::buffer_picture(replayed.buffers[kept.buffer]));
     const auto old = before.find(scene.name);
     const bool same = old != before.end() && old->second == entry;
     changed += !same;
+    if (scene.frame_of.empty()) frame_bytes += bytes.size();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    fmt::print("{:28} {:9} {:6.1f} s\n", scene.name, same ? "as before" : "changed",
-               seconds.count());
+    fmt::print("{:28} {:9} {:8} bytes {:6.1f} s\n", scene.name, same ? "as before" : "changed",
+               bytes.size(), seconds.count());
     std::fflush(stdout);
   }
-  for (const auto& [file, picture] : pictures) ar::write_png(golden_folder() / file, picture);
-  write_manifest(after);
-  fmt::print("wrote {} scenes, {} of them changed, to {}\n", after.size(), changed,
-             golden_folder().string());
+  ar::write_file(manifest_path(kFolder), manifest_text(after));
+  fmt::print("wrote {} scenes ({} bytes of frames), {} of them changed, to {}\n", after.size(),
+             frame_bytes, changed, kFolder.string());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Makes the golden hashes and pictures anew. Only the reference renderer writes them.
+// Makes the golden frames, hashes and pictures anew. Only the reference renderer writes the hashes.
 #pragma once
 
 namespace gnomon::golden {

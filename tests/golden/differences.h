@@ -1,31 +1,28 @@
-// What a failing golden scene leaves behind.
+// Where two runs of a scene part.
 #pragma once
 
-#include <filesystem>
+#include <functional>
 #include <string>
 
-#include "golden/scenes.h"
+#include "raster/frame_format.h"
 
 namespace gnomon::golden {
 
-/// Two runs of a scene, buffer by buffer.
-struct Differences {
+/// Two buffers, pixel by pixel.
+struct Difference {
   /// Pixels that differ in any bit.
-  std::size_t color_pixels = 0, depth_pixels = 0, stencil_pixels = 0;
+  std::size_t pixels = 0;
   /// Largest difference: of a colour channel (in 1/255, or as floats), of the depth integers, of
   /// the stencil values.
-  double color = 0.0, depth = 0.0, stencil = 0.0;
+  double largest = 0.0;
 };
 
-/// Precondition: the same size and formats.
-Differences differences(const Targets& got, const Targets& expected);
+/// Precondition: the same kind, size and format. `at` is told of every pixel that differs.
+Difference difference(
+    const raster::Buffer& got, const raster::Buffer& expected,
+    const std::function<void(int x, int y)>& at = [](int, int) {});
 
-/// Writes pictures of what was got and of the pixels that differ (white) into `folder`, which is
-/// made.
-void write_differences(const std::filesystem::path& folder, const Targets& got,
-                       const Targets& expected);
-
-/// One line a buffer.
-std::string sentence(const Differences& differences);
+/// A line a buffer: "depth d24 160x120: 3 pixels differ, by at most 1".
+std::string sentences(const raster::RecordedFrame& got, const raster::RecordedFrame& expected);
 
 }  // namespace gnomon::golden

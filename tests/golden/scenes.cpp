@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -10,9 +11,11 @@
 #include "ar/camera.h"
 #include "ar/pinhole_view.h"
 #include "ar/scene_file.h"
+#include "golden/box.h"
 #include "pipeline/general_method.h"
 #include "pipeline/haller.h"
 #include "raster/check.h"
+#include "raster/random_frames.h"
 
 namespace gnomon::golden {
 namespace {
@@ -20,10 +23,6 @@ namespace {
 using pipeline::VolumeMethod;
 using raster::ColorFormat;
 using raster::DepthFormat;
-
-struct Size {
-  int width, height;
-};
 
 /// What a recorded frame of a shadow method borrows.
 struct World {
@@ -81,27 +80,22 @@ struct Desk {
   std::vector<pipeline::Light> more_lights = {};
 };
 
-raster::Frame record_desk(const Desk& desk, Targets& targets) {
-  const Size size{targets.color.width(), targets.color.height()};
+raster::RecordedFrame record_desk(const Desk& desk, Size size, Formats formats) {
+  raster::RecordedFrame out;
+  const raster::Targets targets = add_targets(out, size, formats);
   const std::shared_ptr<World> world = desk_world(desk.name, size);
   for (const pipeline::Light& light : desk.more_lights) world->scene.lights.push_back(light);
   world->picture = ramps(size);
-  raster::Frame frame = pipeline::record_haller(
+  out.frame = pipeline::record_haller(
       world->scene, world->camera,
-      raster::ImageView::from_top_row(world->picture.data(), size.width, size.height, 3),
-      targets.all(), desk.options);
-  frame.keep(world);
-  return frame;
+      raster::ImageView::from_top_row(world->picture.data(), size.width, size.height, 3), targets,
+      desk.options);
+  out.frame.keep(world);
+  return out;
 }
 
-Scene desk_scene(std::string name, Size size, Desk desk, ColorFormat color = ColorFormat::rgba8,
-                 DepthFormat depth = DepthFormat::d24) {
-  return {.name = std::move(name),
-          .width = size.width,
-          .height = size.height,
-          .color = color,
-          .depth = depth,
-          .record = [desk](Targets& targets) { return record_desk(desk, targets); }};
+Scene desk_scene(std::string name, Size size, Desk desk, Formats formats = {}) {
+  return {.name = std::move(name), .record = [=] { return record_desk(desk, size, formats); }};
 }
 
 /// A window at infinity and a lamp of some size beside the bulb.
@@ -116,27 +110,6 @@ std::vector<pipeline::Light> window_and_lamp() {
            .share = 0.2f,
            .radius = 0.05f,
            .samples = 3}};
-}
-
-/// A box about the origin with three vertices and a normal of its own a triangle.
-pipeline::Mesh box(const glm::vec3& half) {
-  pipeline::Mesh mesh;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const float side : {-1.0f, 1.0f}) {
-      glm::vec3 normal(0.0f), u(0.0f), v(0.0f);
-      normal[axis] = side;
-      u[(axis + 1) % 3] = 1.0f;
-      v[(axis + 2) % 3] = side;
-      const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-      for (const std::array<float, 2>& corner :
-           {std::array{-1.0f, -1.0f}, {1.0f, -1.0f}, {1.0f, 1.0f}, {-1.0f, 1.0f}}) {
-        mesh.positions.emplace_back((normal + u * corner[0] + v * corner[1]) * half, 1.0f);
-        mesh.normals.push_back(normal);
-        mesh.texcoords.emplace_back(corner[0] * 1.5f, corner[1] * 1.5f);
-      }
-      for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(base + i);
-    }
-  return mesh;
 }
 
 pipeline::Object boxed(std::string name, const glm::vec3& half, const glm::vec3& at, float sine,
@@ -159,8 +132,10 @@ pipeline::Object boxed(std::string name, const glm::vec3& half, const glm::vec3&
 }
 
 /// Three turned boxes above a plate; the lights are a point and, if asked for, a direction.
-raster::Frame record_boxes(const pipeline::GeneralOptions& options, bool two_lights,
-                           Targets& targets) {
+raster::RecordedFrame record_boxes(const pipeline::GeneralOptions& options, bool two_lights,
+                                   Size size, Formats formats) {
+  raster::RecordedFrame out;
+  const raster::Targets targets = add_targets(out, size, formats);
   auto checks = std::make_shared<raster::Texture>();
   checks->width = checks->height = 2;
   checks->texels = {
@@ -176,7 +151,7 @@ raster::Frame record_boxes(const pipeline::GeneralOptions& options, bool two_lig
   if (two_lights)
     scene.lights.push_back(
         {.name = "sky", .position = {-0.6f, 0.8f, 0.0f, 0.0f}, .color = {0.2f, 0.25f, 0.35f}});
-  const int width = targets.color.width(), height = targets.color.height();
+  const auto [width, height] = size;
   const ar::CameraModel lens{.width = width,
                              .height = height,
                              .fx = 0.9 * width,
@@ -187,29 +162,27 @@ raster::Frame record_boxes(const pipeline::GeneralOptions& options, bool two_lig
   const glm::dmat4 world_from_camera{
       {1, 0, 0, 0}, {0, -0.8, 0.6, 0}, {0, -0.6, -0.8, 0}, {0.1, 3.2, 4.0, 1}};
   world->camera = ar::PinholeView(ar::Lens(lens), 1).camera(world_from_camera, 0.1, 30.0);
-  raster::Frame frame = pipeline::record_general(scene, world->camera, targets.all(), options);
-  frame.keep(world);
-  return frame;
+  out.frame = pipeline::record_general(scene, world->camera, targets, options);
+  out.frame.keep(world);
+  return out;
 }
 
 Scene boxes_scene(std::string name, Size size, const pipeline::GeneralOptions& options,
-                  bool two_lights, ColorFormat color, DepthFormat depth) {
+                  bool two_lights, Formats formats) {
   return {.name = std::move(name),
-          .width = size.width,
-          .height = size.height,
-          .color = color,
-          .depth = depth,
-          .record = [=](Targets& targets) { return record_boxes(options, two_lights, targets); },
+          .record = [=] { return record_boxes(options, two_lights, size, formats); },
           .quick = true};
 }
 
-Scene random_scene(std::uint32_t seed, Size size, ColorFormat color, DepthFormat depth) {
+Scene random_scene(std::uint32_t seed, Size size, Formats formats) {
   return {.name = "random-" + std::to_string(seed),
-          .width = size.width,
-          .height = size.height,
-          .color = color,
-          .depth = depth,
-          .record = [seed](Targets& t) { return random_frames::random_frame(seed, 60, t); },
+          .record =
+              [=] {
+                raster::RecordedFrame out;
+                const raster::Targets targets = add_targets(out, size, formats);
+                random_frames::record_pass(out.frame, seed, 60, targets);
+                return out;
+              },
           .quick = true};
 }
 
@@ -224,10 +197,11 @@ void add_desks(std::vector<Scene>& all) {
   for (const auto& [name, file] : desks) {
     all.push_back(desk_scene(name + "-zpass", kUsual, {file, {.method = VolumeMethod::zpass}}));
     all.push_back(desk_scene(name + "-zfail", kUsual, {file, {.method = VolumeMethod::zfail}}));
-    all.push_back(desk_scene(name + "-automatic", kLarge, {file, {}}));
   }
   const char* one = desks.at("desk-01");
   const char* four = desks.at("desk-04");
+  all.push_back(desk_scene("desk-01-automatic", kLarge, {one, {}}));
+  all.push_back(desk_scene("desk-04-automatic", kLarge, {four, {}}));
   for (const Size size : {Size{1, 1}, {7, 5}, {63, 65}, {130, 97}}) {
     all.push_back(
         desk_scene("desk-01-" + std::to_string(size.width) + "x" + std::to_string(size.height),
@@ -244,11 +218,12 @@ void add_desks(std::vector<Scene>& all) {
   all.push_back(
       desk_scene("desk-03-appendix-letter", kUsual,
                  {desks.at("desk-03"), {.method = VolumeMethod::zpass, .appendix_letter = true}}));
-  all.push_back(desk_scene("desk-03-d16", kUsual, {desks.at("desk-03"), {}}, ColorFormat::rgba8,
-                           DepthFormat::d16));
-  all.push_back(desk_scene("desk-04-three-lights", {130, 97}, {four, {}, window_and_lamp()},
-                           ColorFormat::rgba32f));
+  all.push_back(
+      desk_scene("desk-03-d16", kUsual, {desks.at("desk-03"), {}}, {.depth = DepthFormat::d16}));
+  all.push_back(desk_scene("desk-01-three-lights", {130, 97}, {one, {}, window_and_lamp()},
+                           {.color = ColorFormat::rgba32f}));
   all.push_back(desk_scene("desk-04-counts", kLarge, {four, {}}));
+  all.back().frame_of = "desk-04-automatic";
   all.back().last_pass = pipeline::haller_label::kAllVolumes;
 }
 
@@ -256,25 +231,40 @@ std::vector<Scene> make_scenes() {
   std::vector<Scene> all;
   add_desks(all);
   using Method = pipeline::GeneralOptions;
-  all.push_back(boxes_scene("boxes-zpass", {160, 120}, Method{.method = VolumeMethod::zpass}, false,
-                            ColorFormat::rgba8, DepthFormat::d24));
+  all.push_back(
+      boxes_scene("boxes-zpass", {160, 120}, Method{.method = VolumeMethod::zpass}, false, {}));
   all.push_back(boxes_scene("boxes-zfail", {130, 97}, Method{.method = VolumeMethod::zfail}, false,
-                            ColorFormat::rgba8, DepthFormat::d16));
-  all.push_back(boxes_scene("boxes-two-lights", {63, 65}, Method{}, true, ColorFormat::rgba32f,
-                            DepthFormat::d24));
-  all.push_back(random_scene(11, {1, 1}, ColorFormat::rgba8, DepthFormat::d24));
-  all.push_back(random_scene(12, {7, 5}, ColorFormat::rgba32f, DepthFormat::d16));
-  all.push_back(random_scene(13, {63, 65}, ColorFormat::rgba8, DepthFormat::d16));
-  all.push_back(random_scene(14, {130, 97}, ColorFormat::rgba8, DepthFormat::d24));
-  all.push_back(random_scene(15, {160, 120}, ColorFormat::rgba32f, DepthFormat::d24));
-  all.push_back(random_scene(16, {640, 480}, ColorFormat::rgba8, DepthFormat::d24));
+                            {.depth = DepthFormat::d16}));
+  all.push_back(
+      boxes_scene("boxes-two-lights", {63, 65}, Method{}, true, {.color = ColorFormat::rgba32f}));
+  all.push_back(boxes_scene("boxes-1280x720", {1280, 720}, Method{}, true, {}));
+  all.push_back(random_scene(11, {1, 1}, {}));
+  all.push_back(random_scene(12, {7, 5}, {ColorFormat::rgba32f, DepthFormat::d16}));
+  all.push_back(random_scene(13, {63, 65}, {.depth = DepthFormat::d16}));
+  all.push_back(random_scene(14, {130, 97}, {}));
+  all.push_back(random_scene(15, {160, 120}, {.color = ColorFormat::rgba32f}));
+  all.push_back(random_scene(16, {640, 480}, {}));
+  all.push_back(random_scene(17, {1280, 720}, {}));
+  add_shadow_map_scenes(all);
+  add_state_scenes(all);
   return all;
 }
 
 }  // namespace
 
+raster::Targets add_targets(raster::RecordedFrame& out, Size size, Formats formats) {
+  auto& color = out.buffers.emplace_back(std::in_place_type<raster::ColorBuffer>, size.width,
+                                         size.height, formats.color);
+  auto& depth = out.buffers.emplace_back(std::in_place_type<raster::DepthBuffer>, size.width,
+                                         size.height, formats.depth);
+  auto& stencil =
+      out.buffers.emplace_back(std::in_place_type<raster::StencilBuffer>, size.width, size.height);
+  return {&std::get<raster::ColorBuffer>(color), &std::get<raster::DepthBuffer>(depth),
+          &std::get<raster::StencilBuffer>(stencil)};
+}
+
 std::size_t Scene::commands(const raster::Frame& frame) const {
-  if (last_pass.empty()) return frame.command_count();
+  if (last_pass.empty()) return std::numeric_limits<std::size_t>::max();
   std::size_t count = 0;
   for (const raster::Pass& pass : frame.passes()) {
     count += pass.commands.size();

@@ -1,4 +1,5 @@
-// The golden scenes: frames whose bytes are kept as hashes in golden/manifest.json.
+// The golden scenes: frames that are kept as files in golden/frames, and whose bytes are kept as
+// hashes in golden/manifest.json.
 // Invariant: a scene is a function of nothing but its name. It takes models and numbers from the
 // repository, makes its own picture in the photograph's place, and asks no tag, lens or codec.
 #pragma once
@@ -7,33 +8,45 @@
 #include <string>
 #include <vector>
 
-#include "raster/frame.h"
-#include "raster/random_frames.h"
+#include "raster/frame_format.h"
 
 namespace gnomon::golden {
 
-using random_frames::Targets;
-
 struct Scene {
-  /// Letters, digits and dashes.
+  /// Lower-case letters, digits and dashes.
   std::string name;
-  int width = 0, height = 0;
-  raster::ColorFormat color = raster::ColorFormat::rgba8;
-  raster::DepthFormat depth = raster::DepthFormat::d24;
-  /// Records the scene's frame for targets of its size and formats; the frame owns what it borrows,
-  /// the targets apart.
-  std::function<raster::Frame(Targets&)> record;
+  /// Makes the scene's buffers and records its frame, which owns what it borrows.
+  std::function<raster::RecordedFrame()> record;
+  /// The scene that has the same frame and keeps its file; this one when empty.
+  std::string frame_of = {};
   /// The last pass that is run: the first one whose label begins so; all of them when empty.
   std::string last_pass = {};
   /// The slow reference takes well under a second.
   bool quick = false;
 
-  Targets make_targets() const { return {width, height, color, depth}; }
-  /// How many commands of the frame are run.
+  /// The frame file's name.
+  const std::string& frame_name() const { return frame_of.empty() ? name : frame_of; }
+  /// How many commands of the frame are run; more than it has where all are.
   std::size_t commands(const raster::Frame& frame) const;
 };
 
 /// All scenes; names are unique.
 const std::vector<Scene>& scenes();
+
+/// Frames with shadow maps, and with the rarer fixed-function states; part of scenes().
+void add_shadow_map_scenes(std::vector<Scene>& all);
+void add_state_scenes(std::vector<Scene>& all);
+
+struct Size {
+  int width, height;
+};
+
+struct Formats {
+  raster::ColorFormat color = raster::ColorFormat::rgba8;
+  raster::DepthFormat depth = raster::DepthFormat::d24;
+};
+
+/// Makes three buffers of one size.
+raster::Targets add_targets(raster::RecordedFrame& out, Size size, Formats formats);
 
 }  // namespace gnomon::golden
