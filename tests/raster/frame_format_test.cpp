@@ -206,7 +206,7 @@ TEST(FrameFormat, ATinyFrameHasTheseBytes) {
       "00000000 0000803f 00000000 00000000"           //
       "00000000 00000000 0000803f 00000000"           //
       "00000000 00000000 00000000 0000803f"           //
-      "02010000"                                      // stencil reference 258
+      "02010000 f9ffffff"                             // stencil references 258 and -7
       "00  0000803f 0000803f 0000803f 0000803f"       // flat, white
       "ffffffff 00 00");                              // no texture, no lookup, luminance
   EXPECT_EQ(encode_frame(tiny_recording().frame), expected);
