@@ -136,9 +136,10 @@ TEST_F(Golden, EndsWithOneWhereAByteDiffersOrAFileIsMissing) {
   const std::string folder = small_folder();
   const std::string frame = folder + "/frames/state-depth-clamp.frame";
   std::string bytes = text_of(frame);
-  // The last command's flat colour: red becomes another one.
-  const std::size_t red = bytes.size() - 4 - 3 - 16 + 1;
-  bytes[red + 2] = static_cast<char>(bytes[red + 2] ^ 0x40);
+  // The first clear's colour: grey 0.5 gets a red of 0.125.
+  const std::size_t grey = bytes.find(std::string("\1\0\0\0\x3f\0\0\0\x3f", 9));
+  ASSERT_NE(grey, std::string::npos);
+  bytes[grey + 4] = 0x3e;
   std::ofstream(frame, std::ios::binary) << bytes;
   Outcome got = run({"golden", "--verify", "--golden", folder, "--isa", "scalar"});
   EXPECT_EQ(got.status, 1);

@@ -206,7 +206,7 @@ raster::RecordedFrame record_modes() {
   record_map(out.frame, map, kLamp, std::span(*kept).first(2));
   out.frame.begin_pass("flat through the map drawn anew", targets);
   draw_plate({0.9f, 0.2f, 0.2f, 0.5f}, Mode::alpha, CompareFunc::greater, Filter::linear,
-             raster::Rect{80, 0, 80, 120});
+             std::nullopt);
   return out;
 }
 
