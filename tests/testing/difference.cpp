@@ -113,7 +113,6 @@ std::string kind(const raster::ColorBuffer& color) {
 
 DifferenceMap::DifferenceMap(int width, int height)
     : width_(width),
-      height_(height),
       signs_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), ' '),
       x0_(width),
       y0_(height) {}

@@ -78,7 +78,7 @@ class DifferenceMap {
   }
   char block_sign(int x, int y, int block) const;
 
-  int width_, height_;
+  int width_;
   std::string signs_;
   std::size_t compared_ = 0, differing_ = 0;
   Pixel first_, largest_;
