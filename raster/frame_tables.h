@@ -1,0 +1,17 @@
+// What the two directions of the frame format agree on beside the fields (docs/frame-format.md).
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace gnomon::raster {
+
+inline constexpr std::string_view kFrameMagic = "gnomon frame";
+inline constexpr std::uint32_t kFrameVersion = 1;
+/// In an index's place: nothing is meant.
+inline constexpr std::uint32_t kNone = 0xffffffff;
+
+enum class BufferKind : std::uint8_t { color, depth, stencil };
+enum class ArrayType : std::uint8_t { vec2, vec3, vec4, index };
+
+}  // namespace gnomon::raster
