@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -198,6 +199,27 @@ class Geometry {
     Outline snap_only;
   };
 
+  /// gnomon's depths are as far from llvmpipe's as the snap may bring them, and its polygon offset
+  /// as far as the slopes are apart.
+  bool own_depths_hold(const Both& both, const DepthBounds& bounds, int x, int y) const {
+    const std::optional<PolygonOffset>& offset = draw_.state.polygon_offset;
+    const double factor = offset ? std::abs(static_cast<double>(offset->factor)) : 0.0;
+    return std::all_of(both.pieces.begin(), both.pieces.end(), [&](const SetupTriangle& piece) {
+      if (!covers(piece, x, y)) return true;
+      const double slope = std::max(units(piece.depth.step_x), units(piece.depth.step_y));
+      const double apart =
+          std::max(std::abs(slope - bounds.slope_low), std::abs(slope - bounds.slope_high));
+      const double slack = bounds.slack + (factor > 0.0 ? factor * apart : 0.0);
+      const double depth = own_depth(piece, setup_, x, y);
+      return depth >= bounds.low - slack && depth <= bounds.high + slack;
+    });
+  }
+
+  /// A slope's size, from 1/256 units modulo 2^64.
+  static double units(std::uint64_t step) {
+    return std::abs(static_cast<double>(static_cast<std::int64_t>(step))) / 256.0;
+  }
+
   Site site(const Both& both, int x, int y) const {
     Site site;
     for (const SetupTriangle& piece : both.pieces) {
@@ -215,9 +237,7 @@ class Geometry {
       const bool front =
           (signed_area(both.outline) > 0.0) == (draw_.state.front_face == FrontFace::ccw);
       const DepthBounds depth = depth_bounds(setup_, both.outline, center, height_);
-      for (const Fragment& own : site.own)
-        site.own_depths_hold = site.own_depths_hold && own.depth_low >= depth.low - depth.slack &&
-                               own.depth_low <= depth.high + depth.slack;
+      site.own_depths_hold = own_depths_hold(both, depth, x, y);
       if (!culled(draw_.state, front))
         site.possible.push_back({{front, depth.low, depth.high}});
       else if (!near)

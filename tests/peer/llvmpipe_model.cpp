@@ -105,12 +105,12 @@ constexpr double kHalfStep = 0.5 / 256.0;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Depths, and how much the snap may move them.
+/// Depths, what half a step of the snap rises, and the larger slope.
 struct Interval {
-  double low = 0.0, high = 0.0, snap = 0.0;
+  double low = 0.0, high = 0.0, snap = 0.0, slope_low = 0.0, slope_high = 0.0;
 };
 
-constexpr Interval kAnyDepth{-kInfinity, kInfinity, kInfinity};
+constexpr Interval kAnyDepth{-kInfinity, kInfinity, kInfinity, 0.0, kInfinity};
 
 /// Slopes of depth a pixel along x and y, and bounds of their errors where the corners' coordinates
 /// err by error_px and their depths by error_depth. Slopes are numerator / area; both are sums of
@@ -154,17 +154,16 @@ Interval plane_at(const std::array<Corner, 3>& c, const glm::dvec2& point,
   // Six roundings on the way from corner 0 to the origin and on to the pixel.
   double error = ez + steepness * e + glm::dot(slopes.error, glm::abs(from)) +
                  6.0 * kU * (highest + 2.0 * reach * (steepness + slopes.error.x + slopes.error.y));
-  double snap = steepness * kHalfStep;
+  const double slope = std::max(size.x, size.y);
+  const double slope_error = std::max(slopes.error.x, slopes.error.y);
   if (offset) {
     const double factor = offset->factor, units = static_cast<double>(offset->units) * kU;
-    const double moved = factor * std::max(size.x, size.y) + units;
-    const Slopes snapped = slopes_of(c, kHalfStep, kU);
+    const double moved = factor * slope + units;
     value += moved;
-    error += std::abs(factor) * std::max(slopes.error.x, slopes.error.y) +
-             4.0 * kU * (std::abs(moved) + std::abs(units));
-    if (factor != 0.0) snap += std::abs(factor) * std::max(snapped.error.x, snapped.error.y);
+    error += std::abs(factor) * slope_error + 4.0 * kU * (std::abs(moved) + std::abs(units));
   }
-  return {value - error, value + error, snap};
+  return {value - error, value + error, steepness * kHalfStep, slope - slope_error,
+          slope + slope_error};
 }
 
 }  // namespace
@@ -223,7 +222,7 @@ bool contains(const Outline& outline, const glm::dvec2& point) {
 
 DepthBounds depth_bounds(const DrawSetup& setup, const Outline& outline, const glm::dvec2& point,
                          int target_height) {
-  Interval all{kInfinity, -kInfinity};
+  Interval all{kInfinity, -kInfinity, 0.0, kInfinity, 0.0};
   for (std::size_t i = 2; i < outline.size(); ++i) {
     const Outline piece{outline[0], outline[i - 1], outline[i]};
     if (!contains(piece, point) && clearance_px(piece, point) > 0.0) continue;
@@ -232,6 +231,8 @@ DepthBounds depth_bounds(const DrawSetup& setup, const Outline& outline, const g
     all.low = std::min(all.low, one.low);
     all.high = std::max(all.high, one.high);
     all.snap = std::max(all.snap, one.snap);
+    all.slope_low = std::min(all.slope_low, one.slope_low);
+    all.slope_high = std::max(all.slope_high, one.slope_high);
   }
   const double largest = max_depth(DepthFormat::d24);
   const State& state = setup.draw->state;
@@ -246,7 +247,7 @@ DepthBounds depth_bounds(const DrawSetup& setup, const Outline& outline, const g
   };
   return {static_cast<std::uint32_t>(std::max(std::ceil(to_units(all.low, -1.0)), 0.0)),
           static_cast<std::uint32_t>(std::min(std::floor(to_units(all.high, 1.0)), largest)),
-          all.snap * largest + 1.0};
+          all.snap * largest + 1.0, all.slope_low * largest, all.slope_high * largest};
 }
 
 }  // namespace gnomon::peer

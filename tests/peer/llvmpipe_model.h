@@ -52,11 +52,13 @@ bool contains(const Outline& outline, const glm::dvec2& point);
 /// Integers of the depth buffer.
 struct DepthBounds {
   std::uint32_t low = 0, high = 0;
-  /// How far gnomon's depth may be from these: its plane goes through the snapped vertices. A point
+  /// How far the snap may bring gnomon's plane away from these, but for polygon offset. A point
   /// inside the snapped triangle is a mean of its corners, each half a step from the plane's own,
-  /// so the planes are apart by no more than half a step's rise along x and y; polygon offset takes
-  /// the factor times what the snap does to the slope besides. One more for rounding.
+  /// so the planes are apart by no more than half a step's rise along x and y; one more for
+  /// rounding.
   double slack = 0.0;
+  /// The larger of the two slopes, in units a pixel, which polygon offset multiplies.
+  double slope_low = 0.0, slope_high = 0.0;
 };
 
 /// The depths that llvmpipe may give the pixel centre: those of the fan's pieces that may cover it.
