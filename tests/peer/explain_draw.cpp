@@ -8,6 +8,7 @@
 
 #include "llvmpipe_blend.h"
 #include "llvmpipe_model.h"
+#include "raster/blend.h"
 #include "raster/geometry.h"
 #include "raster/kernels.h"
 #include "raster/tile.h"
@@ -86,8 +87,9 @@ May compare_depths(CompareFunc func, const Fragment& f, const PixelState& s) {
 /// Sends fragments through the tests, along every branch that their depths leave open.
 class Pixel {
  public:
-  Pixel(const Draw& draw, const Targets& targets)
+  Pixel(const Draw& draw, const Targets& targets, Driver driver)
       : draw_(draw),
+        driver_(driver),
         setup_(make_fragment_setup(draw, targets)),
         source_(to_rgba8(std::get<Flat>(draw.shading).color)) {}
 
@@ -114,7 +116,7 @@ class Pixel {
       passed.depth_low = fragment.depth_low;
       passed.depth_high = fragment.depth_high;
     }
-    passed.color = llvmpipe_blend(draw_.state.color, source_, state.color);
+    passed.color = blend(state.color);
     reach(passed, Fate::pass);
   }
 
@@ -133,7 +135,15 @@ class Pixel {
     return passed;
   }
 
+  Rgba8 blend(const Rgba8& stored) const {
+    const ColorState& state = draw_.state.color;
+    if (driver_ == Driver::llvmpipe) return llvmpipe_blend(state, source_, stored);
+    const Rgba8 constant = state.blend ? to_rgba8(state.blend->constant) : Rgba8{};
+    return blend_rgba8(state, constant, source_, stored);
+  }
+
   const Draw& draw_;
+  const Driver driver_;
   const FragmentSetup setup_;
   const Rgba8 source_;
 };
@@ -165,8 +175,11 @@ bool culled(const State& state, bool front) {
 /// One draw's triangles, set up by both.
 class Geometry {
  public:
-  Geometry(const Draw& draw, const Targets& targets)
-      : draw_(draw), setup_(make_draw_setup(draw, targets)), height_(targets.height()) {
+  Geometry(const Draw& draw, const Targets& targets, Driver driver)
+      : draw_(draw),
+        setup_(make_draw_setup(draw, targets)),
+        height_(targets.height()),
+        rounding_(driver == Driver::llvmpipe ? DepthRounding::nearest : DepthRounding::down) {
     std::vector<glm::vec4> clip(draw.mesh.positions.size());
     scalar_kernels().transform(draw.clip_from_model, draw.mesh.positions.data(), clip.size(),
                                clip.data());
@@ -236,7 +249,7 @@ class Geometry {
     if (near || inside) {
       const bool front =
           (signed_area(both.outline) > 0.0) == (draw_.state.front_face == FrontFace::ccw);
-      const DepthBounds depth = depth_bounds(setup_, both.outline, center, height_);
+      const DepthBounds depth = depth_bounds(setup_, both.outline, center, height_, rounding_);
       site.own_depths_hold = own_depths_hold(both, depth, x, y);
       if (!culled(draw_.state, front))
         site.possible.push_back({{front, depth.low, depth.high}});
@@ -249,6 +262,7 @@ class Geometry {
   const Draw& draw_;
   const DrawSetup setup_;
   const int height_;
+  const DepthRounding rounding_;
   std::vector<Both> triangles_;
 };
 
@@ -390,8 +404,8 @@ DrawCauses& DrawCauses::operator+=(const DrawCauses& other) {
 
 DrawExplanation explain_draw(const Draw& draw, const Targets& targets, const DrawStep& step) {
   DrawExplanation out;
-  const Geometry geometry(draw, targets);
-  const Pixel pixel(draw, targets);
+  const Geometry geometry(draw, targets, step.driver);
+  const Pixel pixel(draw, targets, step.driver);
   for (std::size_t i = 0; i < step.after.stencil.size(); ++i) {
     if (difference_at(step.after, step.after_gl, i).all() == 0) continue;
     const int x = static_cast<int>(i) % step.width, y = static_cast<int>(i) / step.width;

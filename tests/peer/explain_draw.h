@@ -21,6 +21,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "compare.h"
@@ -34,10 +35,15 @@ struct DrawCauses {
   DrawCauses& operator+=(const DrawCauses& other);
 };
 
+/// Whose history it is. softpipe has llvmpipe's clipper, rounds depths down and blends as gnomon
+/// does; its fill rule needs no more than a snap, because ties lie on an edge.
+enum class Driver : std::uint8_t { llvmpipe, softpipe };
+
 /// Buffers before the draw, the same for both, and after it.
 struct DrawStep {
   const Buffers &before, &after, &after_gl;
   int width, height;
+  Driver driver;
 };
 
 struct DrawExplanation {

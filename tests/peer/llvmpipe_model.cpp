@@ -221,7 +221,7 @@ bool contains(const Outline& outline, const glm::dvec2& point) {
 }
 
 DepthBounds depth_bounds(const DrawSetup& setup, const Outline& outline, const glm::dvec2& point,
-                         int target_height) {
+                         int target_height, DepthRounding rounding) {
   Interval all{kInfinity, -kInfinity, 0.0, kInfinity, 0.0};
   for (std::size_t i = 2; i < outline.size(); ++i) {
     const Outline piece{outline[0], outline[i - 1], outline[i]};
@@ -240,13 +240,14 @@ DepthBounds depth_bounds(const DrawSetup& setup, const Outline& outline, const g
   const double low = state.depth_clamp ? near : 0.0, high = state.depth_clamp ? far : 1.0;
   // Mesa's bounds of the clamp are the viewport's offset less and plus its scale, three roundings.
   const double clamp_error = state.depth_clamp ? 3.0 * kU * high : 0.0;
-  // The product with 2^24 - 1 rounds once before it is rounded to an integer.
+  // The product with 2^24 - 1 rounds once before it becomes an integer.
+  const double half = rounding == DepthRounding::nearest ? 0.5 : 0.0;
   const auto to_units = [&](double depth, double way) {
-    return (std::clamp(depth, low, high) + clamp_error * way) * largest * (1.0 + way * kU) +
-           0.5 * way;
+    return std::floor(
+        (std::clamp(depth, low, high) + clamp_error * way) * largest * (1.0 + way * kU) + half);
   };
-  return {static_cast<std::uint32_t>(std::max(std::ceil(to_units(all.low, -1.0)), 0.0)),
-          static_cast<std::uint32_t>(std::min(std::floor(to_units(all.high, 1.0)), largest)),
+  return {static_cast<std::uint32_t>(std::max(to_units(all.low, -1.0), 0.0)),
+          static_cast<std::uint32_t>(std::min(to_units(all.high, 1.0), largest)),
           all.snap * largest + 1.0, all.slope_low * largest, all.slope_high * largest};
 }
 

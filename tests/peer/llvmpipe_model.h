@@ -61,8 +61,11 @@ struct DepthBounds {
   double slope_low = 0.0, slope_high = 0.0;
 };
 
+/// How a depth becomes an integer: llvmpipe rounds it to the nearest, softpipe down.
+enum class DepthRounding : std::uint8_t { nearest, down };
+
 /// The depths that llvmpipe may give the pixel centre: those of the fan's pieces that may cover it.
 DepthBounds depth_bounds(const raster::DrawSetup& setup, const Outline& outline,
-                         const glm::dvec2& point, int target_height);
+                         const glm::dvec2& point, int target_height, DepthRounding rounding);
 
 }  // namespace gnomon::peer

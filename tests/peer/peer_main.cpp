@@ -31,8 +31,8 @@ using namespace gnomon::peer;
 struct Options {
   std::vector<Kind> kinds{Kind::grid, Kind::free, Kind::lookup};
   std::uint32_t frames = 100, seed = 0;
-  /// Failing seeds that are shrunk, a kind.
-  std::size_t shrunk = 3;
+  /// Failing seeds that are made small, a kind; of llvmpipe three if absent, of softpipe none.
+  std::optional<std::size_t> shrunk;
   bool json = false;
   fs::path save, replay;
 };
@@ -89,10 +89,10 @@ bool run_kind(const OsmesaContext& context, Kind kind, const Options& options) {
     if (run_case(context, kind, make_case(kind, seed), tally)) failing.push_back(seed);
   }
   std::cout << (options.json ? json(kind, tally, context.renderer()) : table(kind, tally));
-  if (!context.is_llvmpipe()) return true;
-  for (std::size_t i = 0; i < std::min(failing.size(), options.shrunk); ++i)
+  const std::size_t shrunk = options.shrunk.value_or(context.is_llvmpipe() ? 3 : 0);
+  for (std::size_t i = 0; i < std::min(failing.size(), shrunk); ++i)
     report_failure(context, kind, failing[i], options);
-  return failing.empty();
+  return failing.empty() || !context.is_llvmpipe();
 }
 
 int run(const Options& options) {
@@ -124,8 +124,8 @@ int main(int argc, char** argv) {
   program.add_option("--frames", options.frames, "cases a kind (grid: 200 draws each)")
       ->capture_default_str();
   program.add_option("--seed", options.seed, "of the first case")->capture_default_str();
-  program.add_option("--shrink", options.shrunk, "failing cases to make small, a kind")
-      ->capture_default_str();
+  program.add_option("--shrink", options.shrunk,
+                     "failing cases to make small, a kind (3; softpipe: 0)");
   program.add_flag("--json", options.json, "a line of JSON a kind instead of tables");
   program.add_option("--save", options.save, "folder for the smallest failing frames");
   program.add_option("--replay", options.replay, "replay a saved frame, pass by pass")

@@ -21,12 +21,14 @@ struct Tally {
   /// Pixels that were compared, all looks at the buffers together.
   std::size_t pixels = 0;
   Differing differing;
-  /// Of the kind free.
+  /// Whether differences are explained, and how: of the kind free, of softpipe's grid too.
+  bool explained = false;
   DrawCauses causes;
 };
 
-/// Runs one case, adds what it finds to the tally and returns the first failure. Of the kind free
-/// gnomon's buffers become OpenGL's after every command, so that no difference is carried on.
+/// Runs one case, adds what it finds to the tally and returns the first failure. Where
+/// differences are explained gnomon's buffers become OpenGL's after every command, so that no
+/// difference is carried on.
 std::optional<Disagreement> run_case(const OsmesaContext& context, Kind kind, const Case& tried,
                                      Tally& tally);
 
