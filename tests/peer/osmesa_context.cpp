@@ -1,6 +1,7 @@
 #include "osmesa_context.h"
 
 #include <array>
+#include <cstdlib>
 #include <stdexcept>
 
 #include <GL/osmesa.h>
@@ -35,6 +36,10 @@ OsmesaContext::OsmesaContext(int width, int height)
                                       OSMESA_PROFILE,
                                       OSMESA_COMPAT_PROFILE,
                                       0};
+  // Nothing is written to the home directory; on targets as small as the suite's llvmpipe's threads
+  // cost more than they bring. What the user has set stays.
+  setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+  if (width * height <= 128 * 128) setenv("LP_NUM_THREADS", "0", 0);
   context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
   if (!context_) throw std::runtime_error("OSMesa gives no context");
   if (!OSMesaMakeCurrent(static_cast<OSMesaContext>(context_), color_.data(), GL_UNSIGNED_BYTE,

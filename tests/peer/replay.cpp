@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "raster/check.h"
 #include "raster/kernels.h"
@@ -58,6 +59,11 @@ GLenum gl(BlendFactor factor) {
 GLint gl(Wrap wrap) {
   constexpr std::array<GLint, 3> kWraps{GL_REPEAT, GL_CLAMP_TO_EDGE, GL_MIRRORED_REPEAT};
   return kWraps.at(static_cast<std::size_t>(wrap));
+}
+
+GLint gl(DepthTextureMode mode) {
+  constexpr std::array<GLint, 3> kModes{GL_LUMINANCE, GL_ALPHA, GL_INTENSITY};
+  return kModes.at(static_cast<std::size_t>(mode));
 }
 
 void enable(GLenum what, bool on) { on ? glEnable(what) : glDisable(what); }
@@ -207,6 +213,39 @@ class Replayer {
     glTexCoordPointer(2, GL_FLOAT, sizeof(glm::vec2), mesh.texcoords.data());
   }
 
+  /// On texture unit 1, so that a colour texture may be there too.
+  static void set_depth_lookup(const Flat& flat, const std::vector<glm::vec4>& coordinates) {
+    const DepthLookup& lookup = *flat.depth_lookup;
+    glActiveTexture(GL_TEXTURE1);
+    const GLint filter = lookup.filter == Filter::linear ? GL_LINEAR : GL_NEAREST;
+    const GLint wrap = lookup.border ? GL_CLAMP_TO_BORDER : GL_CLAMP_TO_EDGE;
+    const std::array<GLfloat, 4> border{lookup.border.value_or(0.0f), 0.0f, 0.0f, 0.0f};
+    glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, border.data());
+    for (const auto& [name, value] :
+         {std::pair{GL_TEXTURE_MIN_FILTER, filter}, std::pair{GL_TEXTURE_MAG_FILTER, filter},
+          std::pair{GL_TEXTURE_WRAP_S, wrap}, std::pair{GL_TEXTURE_WRAP_T, wrap},
+          std::pair{GL_TEXTURE_COMPARE_MODE, GL_COMPARE_R_TO_TEXTURE},
+          std::pair{GL_TEXTURE_COMPARE_FUNC, static_cast<GLint>(gl(lookup.func))},
+          std::pair{GL_DEPTH_TEXTURE_MODE, gl(flat.depth_texture_mode)}})
+      glTexParameteri(GL_TEXTURE_2D, static_cast<GLenum>(name), value);
+    glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
+    std::vector<std::uint32_t> texels = lookup.map->to_rows();
+    for (std::uint32_t& texel : texels) texel = texel << 8 | texel >> 16;
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, lookup.map->width(), lookup.map->height(),
+                 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, texels.data());
+    glEnable(GL_TEXTURE_2D);
+    glClientActiveTexture(GL_TEXTURE1);
+    glEnableClientState(GL_TEXTURE_COORD_ARRAY);
+    glTexCoordPointer(4, GL_FLOAT, sizeof(glm::vec4), coordinates.data());
+  }
+
+  static void end_depth_lookup() {
+    glDisableClientState(GL_TEXTURE_COORD_ARRAY);
+    glClientActiveTexture(GL_TEXTURE0);
+    glDisable(GL_TEXTURE_2D);
+    glActiveTexture(GL_TEXTURE0);
+  }
+
   void draw_triangles(const Draw& draw) const {
     std::vector<glm::vec4> clip(draw.mesh.positions.size());
     scalar_kernels().transform(draw.clip_from_model, draw.mesh.positions.data(), clip.size(),
@@ -223,8 +262,16 @@ class Replayer {
     glEnableClientState(GL_COLOR_ARRAY);
     glColorPointer(4, GL_FLOAT, sizeof(glm::vec4), colors.data());
     if (flat && flat->texture) set_texture(*flat->texture, draw.mesh);
+    std::vector<glm::vec4> map_coordinates(clip.size());
+    const bool looks_up = flat && flat->depth_lookup;
+    if (looks_up) {
+      scalar_kernels().transform(flat->depth_lookup->map_from_position, draw.mesh.positions.data(),
+                                 clip.size(), map_coordinates.data());
+      set_depth_lookup(*flat, map_coordinates);
+    }
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indices.size()), GL_UNSIGNED_INT,
                    indices.data());
+    if (looks_up) end_depth_lookup();
     glDisable(GL_TEXTURE_2D);
     for (const GLenum array : {GL_VERTEX_ARRAY, GL_COLOR_ARRAY, GL_TEXTURE_COORD_ARRAY})
       glDisableClientState(array);
@@ -241,6 +288,12 @@ void check_errors(const std::string& pass) {
 }
 
 }  // namespace
+
+void reset(const OsmesaContext& context) {
+  const Replayer replayer(context, {}, true);
+  replayer(Clear{.color = glm::vec4(0.0f), .depth = 1.0f, .stencil = 0});
+  check_errors("reset");
+}
 
 void replay(const OsmesaContext& context, const raster::Pass& pass,
             const raster::ColorBuffer* color) {

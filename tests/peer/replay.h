@@ -9,7 +9,9 @@
 // Conventions that differ: one unit of polygon offset is one unit of the depth buffer in raster and
 // two in Mesa's llvmpipe at 24 bits, so units are halved here.
 //
-// Colour: Flat shading (constant, vertex colours, texture) is replayed. Lit shading is drawn white:
+// Colour: Flat shading (constant, vertex colours, texture, depth look-up) is replayed; a look-up's
+// coordinates are map_from_position times the position, a vertex at a time, and its map is what
+// the depth buffer holds now. Lit shading is drawn white:
 // stencil and depth do not depend on it, but colour of a pass after a lit draw cannot be compared.
 // Passes whose colour target is not the replay's own draw no colour; depth and stencil are shared,
 // as they are in such frames.
@@ -31,6 +33,9 @@ struct Buffers {
   /// r, g, b, a.
   std::vector<std::uint8_t> color;
 };
+
+/// The context's buffers become what raster's are at first: colour and stencil 0, depth 1.
+void reset(const OsmesaContext& context);
 
 /// Runs the pass's commands on the current context. `color` is the buffer that the context's colour
 /// stands for. Preconditions: the pass's targets have the context's size; depth, if any, is D24.
