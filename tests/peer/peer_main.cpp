@@ -120,6 +120,7 @@ int main(int argc, char** argv) {
   const std::map<std::string, Kind> kinds{
       {"grid", Kind::grid}, {"free", Kind::free}, {"lookup", Kind::lookup}};
   program.add_option("--kind", options.kinds, "grid, free, lookup; all of them if left out")
+      ->option_text("KIND ...")
       ->transform(CLI::CheckedTransformer(kinds));
   program.add_option("--frames", options.frames, "cases a kind (grid: 200 draws each)")
       ->capture_default_str();
