@@ -3,6 +3,8 @@
 // a pixel inside the scissor has the new value in the written bits, any other its old one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "every_value.h"
 #include "grid.h"
 #include "shapes.h"

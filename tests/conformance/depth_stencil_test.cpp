@@ -4,6 +4,10 @@
 // relations, which the target holds.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <limits>
+#include <optional>
+
 #include "every_value.h"
 #include "grid.h"
 #include "raster/random_frames.h"
