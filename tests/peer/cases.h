@@ -13,7 +13,7 @@ namespace gnomon::peer {
 
 enum class Kind : std::uint8_t {
   /// Nothing is left to rounding: vertices on the 1/256 pixel grid inside the target, depths that
-  /// are constant on a triangle or planes with whole slopes, blending with one product at most.
+  /// are constant on a triangle or planes with whole slopes, blending whose products are whole.
   grid,
   /// Real positions of every size, in front of, across and behind the eye, in every state.
   free,
