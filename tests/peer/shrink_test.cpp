@@ -68,7 +68,7 @@ TEST(Shrink, LeavesTheOneTriangleAndTheOneStateThatTheFailureIsMadeOf) {
   expected.stencil.emplace();
   expected.stencil->front.pass = raster::StencilOp::incr_wrap;
   EXPECT_TRUE(draw.state == expected) << describe(smallest);
-  EXPECT_EQ(draw.stencil_ref, StencilRef());
+  EXPECT_EQ(draw.stencil_ref, raster::StencilRef());
 }
 
 TEST(Shrink, KeepsTwoCommandsThatFailOnlyTogether) {
