@@ -323,7 +323,7 @@ TEST(FrameFormat, AnErrorSaysWhereAndWhatAndTheValue) {
   EXPECT_EQ(with(21, 1), "byte 21: a buffer's format is 1, more than 0");
   EXPECT_EQ(with(23, 0x40), "byte 22: a buffer's width is 16387, but it can be 1 to 16384");
   EXPECT_EQ(with(34, 5), "byte 34: an array's type is 5, more than 4");
-  EXPECT_EQ(with(38, 0x10), "byte 39: an array takes 4294967344 bytes, but 269 are left");
+  EXPECT_EQ(with(38, 0x10), "byte 39: an array takes 4294967344 bytes, but 273 are left");
   Bytes longer = good;
   longer.push_back(0);
   EXPECT_EQ(error_of(longer),
