@@ -8,7 +8,7 @@
 #include "apps/ar_json.h"
 #include "apps/output_folder.h"
 #include "ar/error.h"
-#include "ar/file.h"
+#include "ar/frame_file.h"
 #include "ar/image_file.h"
 
 namespace gnomon::apps {
@@ -57,6 +57,13 @@ void run_still(const ArArguments& arguments) {
   const ar::Image picture = ar::read_image_rgb(arguments.image);
   check_folder(arguments.out);
   refuse_to_replace(arguments.image, arguments.out / "composite.png");
+  if (!arguments.save_frame.empty()) {
+    check_folder(std::filesystem::absolute(arguments.save_frame).parent_path());
+    if (arguments.save_frame.extension() == ".png")
+      throw ar::InputError(fmt::format(
+          "--save-frame {}: a frame is no picture; name a file that does not end in .png",
+          arguments.save_frame.string()));
+  }
   refuse_to_replace(arguments.image, arguments.save_frame);
   refuse_to_replace(arguments.scene, arguments.save_frame);
   ar::Session session(scene, picture.width, picture.height, arguments.session);
@@ -75,9 +82,7 @@ void run_still(const ArArguments& arguments) {
   ar::write_png(arguments.out / "object_mask.png", augmented.object_mask);
   ar::write_png(arguments.out / "stencil_counts.png", augmented.stencil_counts);
   if (arguments.steps) write_steps(arguments.out, augmented.steps);
-  if (!arguments.save_frame.empty())
-    ar::write_file(arguments.save_frame,
-                   {reinterpret_cast<const char*>(augmented.frame.data()), augmented.frame.size()});
+  if (!arguments.save_frame.empty()) ar::write_frame(arguments.save_frame, augmented.frame);
 
   if (arguments.as_json) {
     const json line = {{"image", arguments.image.string()},

@@ -16,8 +16,7 @@ raster::RecordedFrame read_frame(const std::filesystem::path& path) {
   }
 }
 
-void write_frame(const std::filesystem::path& path, const raster::Frame& frame) {
-  const std::vector<std::uint8_t> bytes = raster::encode_frame(frame);
+void write_frame(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -1,7 +1,9 @@
 // Recorded frames in and out of files (docs/frame-format.md).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "raster/frame_format.h"
 
@@ -14,7 +16,8 @@ inline constexpr std::uint64_t kMaxFrameFileBytes = std::uint64_t{1} << 31;
 /// what is wrong in it.
 raster::RecordedFrame read_frame(const std::filesystem::path& path);
 
-/// Writes the frame beside `path`, then renames it. Throws InputError if it cannot be written.
-void write_frame(const std::filesystem::path& path, const raster::Frame& frame);
+/// Writes an encoded frame (raster::encode_frame) beside `path`, then renames it. Throws InputError
+/// if it cannot be written.
+void write_frame(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 }  // namespace gnomon::ar

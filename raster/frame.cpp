@@ -25,8 +25,10 @@ void require_size(const Buffer* buffer, int width, int height) {
 
 void require_texture(const std::shared_ptr<const Texture>& texture, const MeshView& mesh) {
   if (!texture) return;
-  require(texture->width > 0 && texture->height > 0 &&
-              texture->texels.size() == static_cast<std::size_t>(texture->width) * texture->height,
+  require(texture->width >= 1 && texture->height >= 1 && texture->width <= kMaxTargetSize &&
+              texture->height <= kMaxTargetSize,
+          "a texture is 1 to 16384 texels wide and high");
+  require(texture->texels.size() == static_cast<std::size_t>(texture->width) * texture->height,
           "a texture has width x height texels");
   require(mesh.texcoords.size() == mesh.positions.size(),
           "a textured mesh has texture coordinates");

@@ -1,5 +1,6 @@
 // The fields of a frame's commands in the order of the file, said once for both directions: `Io` is
-// the writer or the reader of frame_format.cpp, and every field is named for the reader's errors.
+// the writer of frame_encode.cpp or the reader of frame_decode.cpp, and every field is named for
+// the reader's errors.
 // A change here changes the format: docs/frame-format.md and its version follow.
 #pragma once
 

@@ -1,6 +1,7 @@
 // A recorded frame as bytes and back: the format "gnomon frame", version 1 (docs/frame-format.md).
 // Invariant: the bytes are a function of the frame's values alone, of no address and no machine;
-// what encode_frame wrote comes back from decode_frame to be encoded to the very same bytes.
+// what encode_frame wrote comes back from decode_frame to be encoded to the very same bytes (of
+// buffers that take at most kMaxFrameBufferBytes).
 // What the targets held is not part of a frame: a decoded one begins with fresh buffers.
 #pragma once
 

@@ -30,6 +30,7 @@ const std::map<std::string, Rule>& rules() {
       {"raster", {{"raster"}, {"glm", "hwy", "tbb", "oneapi", "sanitizer"}}},
       {"pipeline",
        {{"raster", "pipeline"}, {"glm", "hwy", "tbb", "oneapi", "embree3", "meshoptimizer.h"}}},
+      {"golden", {{"raster", "golden"}, {"glm", "nlohmann"}}},
       {"tests/testing", {{"raster", "testing"}, {"glm", "gmock", "gtest", "raster", "testing"}}},
   };
   return kRules;
@@ -49,7 +50,7 @@ bool is_standard(const std::string& header) {
 std::vector<std::string> violations(const fs::path& root) {
   static const std::regex kInclude(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
   std::vector<std::string> found;
-  for (const auto& folder : {"raster", "pipeline", "ar", "tests/testing"}) {
+  for (const auto& folder : {"raster", "pipeline", "ar", "golden", "tests/testing"}) {
     if (!fs::exists(root / folder)) continue;
     const auto rule = rules().find(folder);
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
@@ -100,15 +101,16 @@ TEST(Layers, EveryKindOfWrongIncludeIsFound) {
   write("ar/good.cpp", "#include <opencv2/core.hpp>\n#include \"pipeline/scene.h\"\n");
   write("ar/up.cpp", "#include \"apps/commands.h\"\n");
   write("ar/not_from_the_root.cpp", "#include \"image.h\"\n");
+  write("golden/up.cpp", "#include <nlohmann/json.hpp>\n#include \"ar/image.h\"\n");
   write("tests/testing/good.h", "#include <gmock/gmock.h>\n#include \"raster/a.h\"\n");
   write("tests/testing/up.cpp", "#include \"pipeline/scene.h\"\n");
-  EXPECT_THAT(violations(root),
-              UnorderedElementsAre("raster/up.h includes pipeline/scene.h",
-                                   "raster/file.cpp includes opencv2/core.hpp",
-                                   "pipeline/up.cpp includes ar/image.h",
-                                   "ar/up.cpp includes apps/commands.h",
-                                   "ar/not_from_the_root.cpp includes image.h",
-                                   "tests/testing/up.cpp includes pipeline/scene.h"));
+  EXPECT_THAT(
+      violations(root),
+      UnorderedElementsAre(
+          "raster/up.h includes pipeline/scene.h", "raster/file.cpp includes opencv2/core.hpp",
+          "pipeline/up.cpp includes ar/image.h", "ar/up.cpp includes apps/commands.h",
+          "ar/not_from_the_root.cpp includes image.h", "golden/up.cpp includes ar/image.h",
+          "tests/testing/up.cpp includes pipeline/scene.h"));
   fs::remove_all(root);
 }
 

@@ -127,8 +127,11 @@ TEST(DepthLookup, OfAnyPositionIsTheIndependentOnesShareToTheBit) {
   std::array<int, 3> kinds{};
   for (const CompareFunc func : kFuncs)
     for (const Filter filter : {Filter::nearest, Filter::linear})
-      for (const std::optional<float>& border :
-           {std::optional<float>(1.0f), {0.0f}, {0.5f}, {-3.0f}, std::optional<float>()})
+      for (const std::optional<float>& border : {std::optional<float>(1.0f),
+                                                 {std::numeric_limits<float>::quiet_NaN()},
+                                                 {0.5f},
+                                                 {-3.0f},
+                                                 std::optional<float>()})
         for (const DepthFormat format : kDepthFormats)
           for (const Size size : kMapSizes) {
             const DepthBuffer map = random_map(random, size, format);

@@ -62,7 +62,7 @@ class Map {
     const double right = map.width() - 1, top = map.height() - 1;
     int relation = 0;
     if (lookup_.border && (x < 0 || y < 0 || x > right || y > top)) {
-      const float border = std::clamp(*lookup_.border, 0.0f, 1.0f);
+      const float border = std::clamp(or_zero(*lookup_.border), 0.0f, 1.0f);
       relation = r_ < border ? -1 : r_ > border ? 1 : 0;
     } else {
       const int i = static_cast<int>(std::clamp(x, 0.0, right));
