@@ -114,7 +114,7 @@ void add_replay(CLI::App& program) {
   command->add_option("frame", options->frame, "Frame file (docs/frame-format.md)")->required();
   add_variant(*command, options->variant);
   command->add_option("--commands", options->commands, "Stop after so many commands")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 32));
   command->add_option("--out", options->out, "Folder for a picture of every buffer");
   command->add_flag("--json", options->json, "Print one line of JSON");
   command->footer(

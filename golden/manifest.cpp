@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <initializer_list>
 
 #include <nlohmann/json.hpp>
 
@@ -39,6 +40,39 @@ bool is_name(const std::string& name) {
   });
 }
 
+void require(bool holds, const std::string& file, const std::string& scene, const char* rule) {
+  if (!holds) throw FolderError(file + ": scene '" + scene + "': " + rule);
+}
+
+bool is_hash(const std::string& text) {
+  return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// Only the keys that are named here; a misspelt one would be a check that is not made.
+void require_keys(const nlohmann::json& object, std::initializer_list<const char*> keys,
+                  const std::string& file, const std::string& scene) {
+  require(object.is_object(), file, scene, "an entry is no table");
+  for (const auto& [key, value] : object.items())
+    if (std::ranges::none_of(keys, [&](const char* k) { return key == k; }))
+      throw FolderError(file + ": scene '" + scene + "': there is no key '" + key + "'");
+}
+
+BufferHash buffer_from_json(const nlohmann::json& b, const std::string& file,
+                            const std::string& scene) {
+  require_keys(b, {"kind", "format", "width", "height", "hash"}, file, scene);
+  BufferHash buffer{b.at("kind"), b.at("format"), b.at("width"), b.at("height"), b.at("hash")};
+  const bool known =
+      (buffer.kind == "color" && (buffer.format == "rgba8" || buffer.format == "rgba32f")) ||
+      (buffer.kind == "depth" && (buffer.format == "d24" || buffer.format == "d16")) ||
+      (buffer.kind == "stencil" && buffer.format == "s8");
+  require(known, file, scene, "a buffer's kind and format are none of gnomon's");
+  const auto is_side = [](int side) { return side >= 1 && side <= raster::kMaxTargetSize; };
+  require(is_side(buffer.width) && is_side(buffer.height), file, scene,
+          "a buffer is 1 to 16384 pixels wide and high");
+  require(is_hash(buffer.hash), file, scene, "a hash is 16 hexadecimal digits");
+  return buffer;
+}
+
 Manifest from_json(const nlohmann::json& json, const std::string& file) {
   if (json.at("format") != kFormat || json.at("hash") != kHash)
     throw FolderError(file + ": its format is not " + kFormat + " with " + kHash);
@@ -49,10 +83,15 @@ Manifest from_json(const nlohmann::json& json, const std::string& file) {
     if (!is_name(entry.frame))
       throw FolderError(file + ": scene '" + name + "': its frame is '" + entry.frame +
                         "', but a name is lower-case letters, digits and dashes");
-    entry.commands = scene.value("commands", kAllCommands);
+    require_keys(scene, {"frame", "commands", "buffers"}, file, name);
+    if (scene.contains("commands")) {
+      require(scene.at("commands").is_number_unsigned(), file, name,
+              "a number of commands is a whole number from 0");
+      entry.commands = scene.at("commands");
+    }
     for (const nlohmann::json& b : scene.at("buffers"))
-      entry.buffers.push_back(
-          {b.at("kind"), b.at("format"), b.at("width"), b.at("height"), b.at("hash")});
+      entry.buffers.push_back(buffer_from_json(b, file, name));
+    require(!entry.buffers.empty(), file, name, "it has no buffer");
   }
   if (manifest.empty()) throw FolderError(file + ": it has no scene");
   return manifest;
@@ -72,7 +111,9 @@ Manifest read_manifest(const fs::path& folder) {
   try {
     return from_json(nlohmann::json::parse(bytes), file);
   } catch (const nlohmann::json::exception& error) {
-    throw FolderError(file + ": " + error.what());
+    // Its first words are the library's own: "[json.exception.type_error.302] ".
+    const std::string text = error.what();
+    throw FolderError(file + ": " + text.substr(std::min(text.size(), text.find("] ") + 2)));
   }
 }
 
