@@ -52,9 +52,9 @@ bool is_hash(const std::string& text) {
 void require_keys(const nlohmann::json& object, std::initializer_list<const char*> keys,
                   const std::string& file, const std::string& scene) {
   require(object.is_object(), file, scene, "an entry is no table");
-  for (const auto& [key, value] : object.items())
-    if (std::ranges::none_of(keys, [&](const char* k) { return key == k; }))
-      throw FolderError(file + ": scene '" + scene + "': there is no key '" + key + "'");
+  for (const auto& item : object.items())
+    if (std::ranges::none_of(keys, [&](const char* key) { return item.key() == key; }))
+      throw FolderError(file + ": scene '" + scene + "': there is no key '" + item.key() + "'");
 }
 
 BufferHash buffer_from_json(const nlohmann::json& b, const std::string& file,
