@@ -31,6 +31,23 @@ std::uint64_t DepthPlane::base_at(int x_px, int y_px) const {
   return static_cast<std::uint64_t>(rise + anchor.z_fx + offset);
 }
 
+std::pair<double, double> DepthPlane::range(int x_px, int y_px, int span,
+                                            DepthFormat format) const {
+  const double one = static_cast<double>(std::int64_t{1} << depth_fraction_bits(format));
+  const double dx = x_px + 0.5 - anchor.x_fx / 256.0, dy = y_px + 0.5 - anchor.y_fx / 256.0;
+  const double rise_x = slope_x * dx, rise_y = slope_y * dy;
+  const double here = static_cast<double>(anchor.z_fx + offset) + (rise_x + rise_y);
+  // A product has a relative error of a few 2^-53, and the depth that is stored is within one unit
+  // of the exact one.
+  const double across = (std::abs(slope_x) + std::abs(slope_y)) * span;
+  const double error =
+      (std::abs(rise_x) + std::abs(rise_y) + std::abs(here) + across) * 0x1p-48 + one;
+  const double low = here + (std::min(slope_x, 0.0) + std::min(slope_y, 0.0)) * span - error;
+  const double high = here + (std::max(slope_x, 0.0) + std::max(slope_y, 0.0)) * span + error;
+  return {std::floor(std::max(low, least - one) / one),
+          std::ceil(std::min(high, greatest + one) / one)};
+}
+
 DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,
                             const std::optional<PolygonOffset>& offset, DepthFormat format,
                             std::uint32_t low, std::uint32_t high) {
@@ -55,6 +72,10 @@ DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::i
     plane.offset = offset_in_plane_units(*offset, slope, fraction_bits);
   }
   const auto [z_min, z_max] = std::minmax({v0.z_fx, v1.z_fx, v2.z_fx});
+  plane.slope_x = static_cast<double>(plane.numerator_x) * 256.0 / static_cast<double>(plane.area);
+  plane.slope_y = static_cast<double>(plane.numerator_y) * 256.0 / static_cast<double>(plane.area);
+  plane.least = static_cast<double>(z_min + plane.offset);
+  plane.greatest = static_cast<double>(z_max + plane.offset);
   plane.narrow = z_min + plane.offset >= static_cast<std::int64_t>(low) << fraction_bits &&
                  z_max + plane.offset <= static_cast<std::int64_t>(high) << fraction_bits;
   return plane;

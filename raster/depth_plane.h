@@ -16,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "raster/buffers.h"
 #include "raster/state.h"
@@ -49,6 +50,14 @@ struct DepthPlane {
   std::int64_t offset = 0;
   /// Every covered pixel's value fits 32 bits and needs no clamp.
   bool narrow = true;
+
+  /// The plane in doubles, for range(): slopes a pixel, and the vertices' least and greatest depth,
+  /// offset included.
+  double slope_x = 0.0, slope_y = 0.0, least = 0.0, greatest = 0.0;
+
+  /// Encloses, in depth units not yet clamped, the depths of all covered pixels among those from
+  /// (x, y) to (x + span, y + span).
+  std::pair<double, double> range(int x_px, int y_px, int span, DepthFormat format) const;
 
   /// base of the tile whose bottom left pixel is (x_px, y_px), modulo 2^64.
   std::uint64_t base_at(int x_px, int y_px) const;

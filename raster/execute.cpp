@@ -7,7 +7,9 @@
 
 #include <algorithm>
 
+#include "raster/block_ranges.h"
 #include "raster/check.h"
+#include "raster/draw_tile.h"
 #include "raster/executor.h"
 #include "raster/geometry.h"
 #include "raster/tile.h"
@@ -88,14 +90,17 @@ void run_tile(const std::vector<Job>& jobs, const Kernels& kernels, std::size_t 
               const Size& size) {
   const TileIndex index{static_cast<int>(tile) % size.tiles_x(),
                         static_cast<int>(tile) / size.tiles_x()};
+  BlockRanges ranges;
   for (const Job& job : jobs) {
+    ranges.use(job.targets.depth);
     if (const Clear* clear = std::get_if<Clear>(job.command)) {
       clear_tile(kernels, *clear, job.targets, index);
+      ranges.forget_all();
     } else if (const Blit* blit = std::get_if<Blit>(job.command)) {
       blit_tile(kernels, *blit, job.targets, index);
     } else {
       for (const SetupTriangle* triangle : job.bins[tile])
-        draw_tile(kernels, job.setup, job.fragments, *triangle, job.targets, index);
+        draw_tile(kernels, job.setup, job.fragments, *triangle, job.targets, index, ranges);
     }
   }
 }

@@ -25,10 +25,10 @@ void for_each_pixel(PixelMask mask, Body body) {
   for (; mask; mask &= mask - 1) body(static_cast<std::size_t>(__builtin_ctzll(mask)));
 }
 
-/// The three edges of a triangle at a block's first pixel centre: value - bias over 256, rounded
-/// down. A pixel's step is then the edge's a or b itself, and the sign is exact, because all pixel
-/// centres of an edge are equal modulo 256. Edges that hold in the whole block are left out.
-struct BlockEdges {
+/// Up to three edges of a triangle over a grid of 8x8 samples (the pixels of a block, or a corner
+/// of each block of a tile), as 32-bit sums: value + x * step_x + y * step_y at sample (x, y).
+/// Edges that hold everywhere are left out; `value` at every sample fits 32 bits.
+struct GridEdges {
   int count = 0;
   std::int32_t value[3];
   std::int32_t step_x[3], step_y[3];
@@ -52,14 +52,18 @@ struct FragmentTests {
 
 /// The kernels of one instruction set.
 struct Kernels {
-  /// Pixels where no edge is negative.
-  PixelMask (*cover_block)(const BlockEdges& edges) noexcept;
+  /// Samples where no edge is negative, bit 8 y + x.
+  PixelMask (*cover_grid)(const GridEdges& edges) noexcept;
 
   /// Runs stencil test, depth test, stencil update and depth write on the covered pixels of a
   /// block; returns those that pass all. `depth` and `stencil` point to the block's 64 values;
   /// either may be null if its test is off.
   PixelMask (*test_block)(const FragmentTests& tests, PixelMask covered, const BlockDepth& plane,
                           std::uint32_t* depth, std::uint8_t* stencil) noexcept;
+
+  /// The least and the greatest of a block's 64 depths.
+  void (*depth_range)(const std::uint32_t* depth, std::uint32_t& least,
+                      std::uint32_t& greatest) noexcept;
 
   /// Writes 64 RGBA8 source colours over the pixels of the mask: blending, then the colour mask
   /// (raster/blend.h). Four bytes a pixel: r, g, b, a; `constant` is the blend's constant colour.

@@ -100,7 +100,7 @@ void update_stencil(StencilOp op, PixelMask mask, std::uint8_t ref, std::uint8_t
   });
 }
 
-PixelMask cover_block(const BlockEdges& edges) noexcept {
+PixelMask cover_grid(const GridEdges& edges) noexcept {
   PixelMask mask = kAllPixels;
   for (int k = 0; k < edges.count && mask; ++k) {
     const std::int32_t value = edges.value[k], dx = edges.step_x[k], dy = edges.step_y[k];
@@ -137,6 +137,13 @@ PixelMask test_block(const FragmentTests& tests, PixelMask covered, const BlockD
   return pass;
 }
 
+void depth_range(const std::uint32_t* depth, std::uint32_t& least,
+                 std::uint32_t& greatest) noexcept {
+  const auto [low, high] = std::minmax_element(depth, depth + kPixelsPerBlock);
+  least = *low;
+  greatest = *high;
+}
+
 void blend_block(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
                  const std::uint8_t* source, std::uint8_t* stored) noexcept {
   const Rgba8 k{constant[0], constant[1], constant[2], constant[3]};
@@ -161,7 +168,7 @@ void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count
 }  // namespace
 
 const Kernels& scalar_kernels() {
-  static constexpr Kernels kKernels{cover_block, test_block, blend_block, transform};
+  static constexpr Kernels kKernels{cover_grid, test_block, depth_range, blend_block, transform};
   return kKernels;
 }
 

@@ -18,7 +18,7 @@
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 
 #include "raster/blend_block-inl.h"
-#include "raster/cover_block-inl.h"
+#include "raster/cover_grid-inl.h"
 #include "raster/test_block-inl.h"
 #include "raster/transform-inl.h"
 
@@ -27,7 +27,7 @@ namespace gnomon::raster {
 namespace HWY_NAMESPACE {
 
 const Kernels* kernels_of_this_target() {
-  static constexpr Kernels kKernels{cover_block, test_block, blend_block, transform};
+  static constexpr Kernels kKernels{cover_grid, test_block, depth_range, blend_block, transform};
   return &kKernels;
 }
 

@@ -154,9 +154,10 @@ HWY_INLINE void write_depths(const Depths& depths, PixelMask pixels, std::uint32
 HWY_INLINE PixelMask test_depth(const FragmentTests& tests, PixelMask candidates,
                                 const BlockDepth& plane, std::uint32_t* depth) {
   if (tests.depth_func == CompareFunc::never) return 0;
+  if (tests.depth_func == CompareFunc::always && !tests.depth_write) return candidates;
   const Depths depths(plane);
   if (tests.depth_func == CompareFunc::always) {
-    if (tests.depth_write) write_depths(depths, candidates, depth);
+    write_depths(depths, candidates, depth);
     return candidates;
   }
   const Comparison c = comparison(tests.depth_func);
@@ -208,6 +209,20 @@ HWY_INLINE void update_stencil(StencilOp op, PixelMask pixels, const FragmentTes
     const VU8 changed = hn::Or(hn::AndNot(write, old), hn::And(write, apply(op, old, ref)));
     hn::StoreU(hn::IfThenElse(lanes_of(d, pixels, i), changed, old), d, stencil + i);
   }
+}
+
+void depth_range(const std::uint32_t* depth, std::uint32_t& least,
+                 std::uint32_t& greatest) noexcept {
+  const DI32 d;
+  const auto* const stored = reinterpret_cast<const std::int32_t*>(depth);
+  VI32 low = hn::LoadU(d, stored), high = low;
+  for (std::size_t i = hn::Lanes(d); i < kPixels; i += hn::Lanes(d)) {
+    const VI32 z = hn::LoadU(d, stored + i);
+    low = hn::Min(low, z);
+    high = hn::Max(high, z);
+  }
+  least = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(d, low)));
+  greatest = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(d, high)));
 }
 
 PixelMask test_block(const FragmentTests& tests, PixelMask covered, const BlockDepth& plane,

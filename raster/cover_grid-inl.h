@@ -1,10 +1,10 @@
-// Vector kernel: which pixels of a block lie inside a triangle's edges.
+// Vector kernel: which of 8x8 samples lie inside a triangle's edges.
 // Read once for each instruction set, so its guard goes to and fro with Highway's.
-#if defined(GNOMON_RASTER_COVER_BLOCK_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef GNOMON_RASTER_COVER_BLOCK_INL_H
-#undef GNOMON_RASTER_COVER_BLOCK_INL_H
+#if defined(GNOMON_RASTER_COVER_GRID_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef GNOMON_RASTER_COVER_GRID_INL_H
+#undef GNOMON_RASTER_COVER_GRID_INL_H
 #else
-#define GNOMON_RASTER_COVER_BLOCK_INL_H
+#define GNOMON_RASTER_COVER_GRID_INL_H
 #endif
 
 #include <hwy/highway.h>
@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace gnomon::raster {
 namespace HWY_NAMESPACE {
 
-PixelMask cover_block(const BlockEdges& edges) noexcept {
+PixelMask cover_grid(const GridEdges& edges) noexcept {
   const DU32 d;
   const DI32 signed_d;
   VU32 steps[3];

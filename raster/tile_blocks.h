@@ -1,0 +1,55 @@
+// The 8x8 blocks of a 64x64 tile: where they lie and which of their pixels a box has.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "raster/geometry.h"
+#include "raster/kernels.h"
+#include "raster/tiled_plane.h"
+
+namespace gnomon::raster {
+
+/// A tile's coordinates, in tiles.
+struct TileIndex {
+  int x = 0, y = 0;
+};
+
+/// Offset of a block in a tile-linear plane, from its coordinates inside the tile in blocks.
+inline std::size_t block_offset(int bx, int by) {
+  return static_cast<std::size_t>(by * kBlocksPerTileRow + bx) * kPixelsPerBlock;
+}
+
+inline PixelBox tile_box(TileIndex tile) {
+  return {tile.x * kTileSize, tile.y * kTileSize, (tile.x + 1) * kTileSize,
+          (tile.y + 1) * kTileSize};
+}
+
+/// Pixels of the block at (x0, y0) that lie inside a box.
+inline PixelMask box_mask(const PixelBox& box, int x0, int y0) {
+  const int left = std::clamp(box.x0 - x0, 0, kBlockSize),
+            right = std::clamp(box.x1 - x0, 0, kBlockSize);
+  const int bottom = std::clamp(box.y0 - y0, 0, kBlockSize),
+            top = std::clamp(box.y1 - y0, 0, kBlockSize);
+  if (left >= right || bottom >= top) return 0;
+  const PixelMask row = ((PixelMask{1} << (right - left)) - 1) << left;
+  PixelMask mask = 0;
+  for (int y = bottom; y < top; ++y) mask |= row << (y * kBlockSize);
+  return mask;
+}
+
+/// Calls body(block's first pixel x, y, offset in the tile, mask of the box's pixels) for each 8x8
+/// block that a box touches.
+template <class Body>
+void for_each_block(const PixelBox& box, TileIndex tile, Body body) {
+  const PixelBox inside = intersect(box, tile_box(tile));
+  if (inside.empty()) return;
+  const int x0 = tile.x * kTileSize, y0 = tile.y * kTileSize;
+  for (int by = (inside.y0 - y0) / kBlockSize; by <= (inside.y1 - 1 - y0) / kBlockSize; ++by)
+    for (int bx = (inside.x0 - x0) / kBlockSize; bx <= (inside.x1 - 1 - x0) / kBlockSize; ++bx) {
+      const int x = x0 + bx * kBlockSize, y = y0 + by * kBlockSize;
+      body(x, y, block_offset(bx, by), box_mask(inside, x, y));
+    }
+}
+
+}  // namespace gnomon::raster
