@@ -32,8 +32,10 @@ TEST(Clear, OfDepthAndStencilWritesItsBitsInsideTheScissor) {
       for (const auto& scissor : kScissors)
         for (const bool depth_write : {false, true})
           for (const int mask : {0x00, 0x0f, 0x80, 0xff})
-            for (const auto& [depth, stencil] :
+            for (const auto& values :
                  {std::pair{-1.0f, -1}, {0.0f, 0}, {0.25f, 255}, {1.0f, 0x1a5}, {2.0f, 77}}) {
+              const float depth = values.first;
+              const int stencil = values.second;
               const Buffers before = every_value(size, format);
               const std::string name = text(size) + " mask " + std::to_string(mask) + " stencil " +
                                        std::to_string(stencil);
