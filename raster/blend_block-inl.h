@@ -97,6 +97,13 @@ HWY_INLINE VI32 blended(const Blend& blend, std::size_t c, const Channels& src, 
   return hn::ShiftRight<8>(hn::Add(hn::Add(n, hn::Set(d, 1)), hn::ShiftRight<8>(n)));
 }
 
+void fill_block(std::uint32_t color, PixelMask mask, std::uint8_t* stored) noexcept {
+  const DU32 d;
+  auto* const to = reinterpret_cast<std::uint32_t*>(stored);
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d))
+    hn::BlendedStore(hn::Set(d, color), lanes_of(d, mask, i), d, to + i);
+}
+
 void blend_block(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
                  const std::uint8_t* source, std::uint8_t* stored) noexcept {
   const DU32 d;

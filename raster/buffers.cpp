@@ -77,6 +77,21 @@ DepthBuffer::DepthBuffer(int width, int height, DepthFormat format)
   for (int ty = 0; ty < plane_.tiles_y(); ++ty)
     for (int tx = 0; tx < plane_.tiles_x(); ++tx)
       std::fill_n(plane_.tile(tx, ty), kPixelsPerTile, max_value());
+  ranges_.resize(static_cast<std::size_t>(plane_.tiles_x()) * plane_.tiles_y());
+}
+
+TiledPlane<std::uint32_t>& DepthBuffer::plane() {
+  ++version_;
+  return plane_;
+}
+
+DepthTile DepthBuffer::tile(int tile_x, int tile_y) {
+  DepthRanges& ranges = ranges_[static_cast<std::size_t>(tile_y) * plane_.tiles_x() + tile_x];
+  if (ranges.version != version_) {
+    ranges.forget_all();
+    ranges.version = version_;
+  }
+  return {plane_.tile(tile_x, tile_y), &ranges};
 }
 
 std::uint32_t DepthBuffer::max_value() const { return max_depth(format_); }

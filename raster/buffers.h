@@ -9,6 +9,7 @@
 
 #include <glm/vec4.hpp>
 
+#include "raster/depth_ranges.h"
 #include "raster/tiled_plane.h"
 
 namespace gnomon::raster {
@@ -61,8 +62,14 @@ class DepthBuffer {
   std::uint32_t max_value() const;
 
   std::uint32_t at(int x, int y) const { return plane_.at(x, y); }
-  TiledPlane<std::uint32_t>& plane() { return plane_; }
+  /// To write values by hand; ask anew after a frame was executed, because the ranges that are kept
+  /// of the values are forgotten here and not when a value is written.
+  TiledPlane<std::uint32_t>& plane();
   const TiledPlane<std::uint32_t>& plane() const { return plane_; }
+
+  /// A tile's values with what is known of their ranges; whoever writes the ones keeps the others
+  /// true. Tiles may be had on several threads, one tile on one.
+  DepthTile tile(int tile_x, int tile_y);
 
   /// Integers row after row from the bottom row.
   std::vector<std::uint32_t> to_rows() const;
@@ -70,6 +77,9 @@ class DepthBuffer {
  private:
   DepthFormat format_;
   TiledPlane<std::uint32_t> plane_;
+  std::vector<DepthRanges> ranges_;
+  /// Grows when values may have been written by hand; ranges of an older version are not known.
+  std::uint64_t version_ = 0;
 };
 
 /// An 8-bit stencil buffer. Starts at zero.

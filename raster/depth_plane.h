@@ -8,15 +8,14 @@
 // the steps exactly rounded rational slopes a pixel. The stored depth is floor((value + half a
 // unit) / 2^f). Error: base 2^-9, steps 63 (2^-9 + 2^-9), offset 2^-9, together 1/4 of a unit for
 // D24 before the last rounding, so the depth is within one unit of the exactly rounded one. A
-// covered pixel's exact value lies between the vertices', so
-// with vertices in [0, 2^(32) - 2^f] value + half a unit stays in 32 bits, and modular 32-bit sums
-// are right whatever the slopes are. Other triangles (depth clamp, offset) use 64 bits.
+// covered pixel's exact value lies between the vertices', so with vertices in [0, 2^(32) - 2^f]
+// value + half a unit stays in 32 bits, and modular 32-bit sums are right whatever the slopes are.
+// Other triangles (depth clamp, offset) use 64 bits.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <utility>
 
 #include "raster/buffers.h"
 #include "raster/state.h"
@@ -38,11 +37,11 @@ constexpr int depth_fraction_bits(DepthFormat format) {
 /// Vertex depths outside are clamped to this magnitude (2^28 depth ranges away).
 inline constexpr std::int64_t kMaxVertexDepth = std::int64_t{1} << 60;
 
+/// How far a stored value, half a unit added, can lie from the exact one, in plane units: the
+/// base's, the steps' and the offset's rounding at a tile's far corner.
+inline constexpr std::int64_t kPlaneError = 65;
+
 struct DepthPlane {
-  SnappedVertex anchor;
-  /// Change of depth a 1/256 pixel is numerator / area.
-  Int128 numerator_x = 0, numerator_y = 0;
-  std::int64_t area = 1;
   /// Slopes a pixel, exactly rounded, modulo 2^64.
   std::uint64_t step_x = 0, step_y = 0;
   /// Polygon offset of the exact slopes, to nearest; computed in double, so up to a unit of the
@@ -50,17 +49,6 @@ struct DepthPlane {
   std::int64_t offset = 0;
   /// Every covered pixel's value fits 32 bits and needs no clamp.
   bool narrow = true;
-
-  /// The plane in doubles, for range(): slopes a pixel, and the vertices' least and greatest depth,
-  /// offset included.
-  double slope_x = 0.0, slope_y = 0.0, least = 0.0, greatest = 0.0;
-
-  /// Encloses, in depth units not yet clamped, the depths of all covered pixels among those from
-  /// (x, y) to (x + span, y + span).
-  std::pair<double, double> range(int x_px, int y_px, int span, DepthFormat format) const;
-
-  /// base of the tile whose bottom left pixel is (x_px, y_px), modulo 2^64.
-  std::uint64_t base_at(int x_px, int y_px) const;
 };
 
 /// Preconditions: area is the vertices' doubled signed area and not zero; |z_fx| <=
@@ -69,5 +57,9 @@ struct DepthPlane {
 DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,
                             const std::optional<PolygonOffset>& offset, DepthFormat format,
                             std::uint32_t low, std::uint32_t high);
+
+/// base of the tile whose bottom left pixel is (x_px, y_px), modulo 2^64. `area` is positive.
+std::uint64_t depth_base_at(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,
+                            std::int64_t offset, int x_px, int y_px);
 
 }  // namespace gnomon::raster

@@ -1,7 +1,9 @@
 #include "raster/draw_tile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "raster/interpolate.h"
 #include "raster/write_color.h"
@@ -33,252 +35,376 @@ FragmentTests resolve_tests(const Draw& draw, const Targets& targets, bool front
   return tests;
 }
 
-BlockDepth depth_at_tile(const DrawSetup& setup, const DepthPlane& plane, TileIndex tile) {
-  BlockDepth depth;
-  depth.fraction_bits = depth_fraction_bits(setup.depth_format);
-  depth.base = plane.base_at(tile.x * kTileSize, tile.y * kTileSize) +
-               (std::uint64_t{1} << (depth.fraction_bits - 1));
-  depth.step_x = plane.step_x;
-  depth.step_y = plane.step_y;
-  depth.narrow = plane.narrow;
-  depth.low = setup.depth_low;
-  depth.high = setup.depth_high;
-  return depth;
+/// Fragments whose stencil test, or depth test, ends so change the stencil.
+bool writes(const FragmentTests& tests, StencilOp op) {
+  return tests.stencil_test && tests.stencil.write_mask != 0 && op != StencilOp::keep;
+}
+
+bool stencil_test_passes_all(const FragmentTests& tests) {
+  return !tests.stencil_test || tests.stencil.func == CompareFunc::always;
+}
+
+bool writes_stencil(const FragmentTests& tests) {
+  const StencilFace& face = tests.stencil;
+  return writes(tests, face.pass) || (tests.depth_test && writes(tests, face.depth_fail)) ||
+         (!stencil_test_passes_all(tests) && writes(tests, face.fail));
+}
+
+/// What op adds to a stencil, if that is all it does.
+std::optional<std::uint8_t> added(const StencilFace& face, StencilOp op) {
+  if (face.write_mask != 0xff) return std::nullopt;
+  if (op == StencilOp::incr_wrap) return std::uint8_t{1};
+  if (op == StencilOp::decr_wrap) return std::uint8_t{0xff};
+  return std::nullopt;
+}
+
+FaceSetup make_face_setup(const FragmentTests& tests, bool color) {
+  const StencilFace& stencil = tests.stencil;
+  const bool passes_all = stencil_test_passes_all(tests);
+  const bool fail_writes = !passes_all && writes(tests, stencil.fail);
+  FaceSetup face;
+  face.tests = tests;
+  face.pass_marks = fail_writes || color || (tests.depth_test && tests.depth_write) ||
+                    writes(tests, stencil.pass);
+  face.fail_marks = fail_writes || writes(tests, stencil.depth_fail);
+  if (!passes_all || !tests.depth_test || tests.depth_write || color ||
+      face.pass_marks == face.fail_marks)
+    return face;
+  const auto delta = added(stencil, face.pass_marks ? stencil.pass : stencil.depth_fail);
+  face.counts = delta.has_value();
+  face.count_on_pass = face.pass_marks;
+  face.delta = delta.value_or(0);
+  return face;
 }
 
 /// An edge at the tile's first pixel centre, over 256: a pixel's step is then the edge's a or b,
 /// and the sign is exact, because all pixel centres of an edge are equal modulo 256.
 struct TileEdge {
-  std::int64_t value = 0, a = 0, b = 0;
+  std::int64_t value, a, b;
 
-  std::int64_t at(int x, int y) const { return value + x * a + y * b; }
-  /// Over the pixels from (x, y) to (x + span, y + span).
   std::int64_t greatest(int x, int y, int span) const {
-    return at(x, y) + (std::max<std::int64_t>(a, 0) + std::max<std::int64_t>(b, 0)) * span;
+    return value + x * a + y * b +
+           (std::max<std::int64_t>(a, 0) + std::max<std::int64_t>(b, 0)) * span;
   }
   std::int64_t least(int x, int y, int span) const {
-    return at(x, y) + (std::min<std::int64_t>(a, 0) + std::min<std::int64_t>(b, 0)) * span;
+    return value + x * a + y * b +
+           (std::min<std::int64_t>(a, 0) + std::min<std::int64_t>(b, 0)) * span;
   }
 };
 
-/// The edges that cross a tile, and which of its 64 blocks the triangle touches and fills (bit 8 y
-/// + x). `touched` may have blocks too many, `filled` some too few.
-struct TileCover {
-  std::array<TileEdge, 3> edges;
-  int count = 0;
-  PixelMask touched = kAllPixels, filled = kAllPixels;
-};
-
-void add_edge(GridEdges& grid, const TileEdge& edge, bool greatest) {
-  constexpr int kSpan = kBlockSize - 1;
-  const auto k = grid.count++;
-  grid.value[k] =
-      static_cast<std::int32_t>(greatest ? edge.greatest(0, 0, kSpan) : edge.least(0, 0, kSpan));
-  grid.step_x[k] = static_cast<std::int32_t>(edge.a * kBlockSize);
-  grid.step_y[k] = static_cast<std::int32_t>(edge.b * kBlockSize);
+TileEdge edge_at_tile(const SetupTriangle& triangle, int k, int x0, int y0) {
+  const Edge edge = triangle.edge(k);
+  const std::int64_t value = edge.at(x0 * std::int64_t{256} + 128, y0 * std::int64_t{256} + 128);
+  return {(value - edge.bias()) >> 8, edge.a, edge.b};
 }
 
-TileCover cover_tile(const SetupTriangle& triangle, TileIndex tile, const Kernels& kernels) {
-  constexpr int kSpan = kTileSize - 1;
-  // Then a crossing edge is within 63 (|a| + |b|) < 2^31 of zero all over the tile.
+enum class Cover { none, in_32_bits, in_64_bits };
+
+/// The edges that cross the tile. The guard band keeps them within 32 bits; only a vertex whose w
+/// was rounded in a cut (raster/clip.h) can lie farther out.
+Cover cross_tile(const SetupTriangle& triangle, int x0, int y0, TileEdges& edges) {
   constexpr std::int64_t kSteepest = std::int64_t{1} << 25;
-  TileCover cover;
-  GridEdges touching, filling;
+  Cover cover = Cover::in_32_bits;
   for (int k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const std::int64_t value = triangle.edge(k, tile.x * std::int64_t{kTileSize * 256} + 128,
-                                             tile.y * std::int64_t{kTileSize * 256} + 128);
-    const TileEdge edge{(value - triangle.bias[i]) >> 8, triangle.a[i], triangle.b[i]};
-    if (edge.least(0, 0, kSpan) >= 0) continue;
-    cover.edges[static_cast<std::size_t>(cover.count++)] = edge;
-    if (std::abs(edge.a) + std::abs(edge.b) < kSteepest) {
-      add_edge(touching, edge, true);
-      add_edge(filling, edge, false);
-    } else {
-      cover.filled = 0;
-    }
-  }
-  if (touching.count > 0) {
-    cover.touched = kernels.cover_grid(touching);
-    cover.filled &= kernels.cover_grid(filling);
+    const TileEdge edge = edge_at_tile(triangle, k, x0, y0);
+    if (edge.greatest(0, 0, kTileSize - 1) < 0) return Cover::none;
+    if (edge.least(0, 0, kTileSize - 1) >= 0) continue;
+    if (std::abs(edge.a) + std::abs(edge.b) >= kSteepest) cover = Cover::in_64_bits;
+    const int i = edges.count++;
+    edges.value[i] = static_cast<std::int32_t>(edge.value);
+    edges.step_x[i] = static_cast<std::int32_t>(edge.a);
+    edges.step_y[i] = static_cast<std::int32_t>(edge.b);
   }
   return cover;
 }
 
-/// The pixels of a block that lie inside the edges.
-PixelMask cover_block(const TileCover& cover, int x, int y, const Kernels& kernels) {
-  constexpr int kSpan = kBlockSize - 1;
-  GridEdges grid;
-  for (int k = 0; k < cover.count; ++k) {
-    const TileEdge& edge = cover.edges[static_cast<std::size_t>(k)];
-    if (edge.greatest(x, y, kSpan) < 0) return 0;
-    if (edge.least(x, y, kSpan) >= 0) continue;
-    // It crosses the block, so it is within 7 (|a| + |b|) < 2^29 of zero in it.
-    grid.value[grid.count] = static_cast<std::int32_t>(edge.at(x, y));
-    grid.step_x[grid.count] = static_cast<std::int32_t>(edge.a);
-    grid.step_y[grid.count] = static_cast<std::int32_t>(edge.b);
-    ++grid.count;
-  }
-  return grid.count > 0 ? kernels.cover_grid(grid) : kAllPixels;
+/// Kernels::cover_pixels for edges that do not fit 32 bits.
+BlockMask cover_pixels_in_64_bits(const SetupTriangle& triangle, int x0, int y0, BlockMask blocks,
+                                  PixelMask* covered) {
+  std::array<TileEdge, 3> edges{};
+  for (int k = 0; k < 3; ++k)
+    edges[static_cast<std::size_t>(k)] = edge_at_tile(triangle, k, x0, y0);
+  BlockMask touched = 0;
+  for_each_block_of(blocks, [&](std::size_t b) {
+    covered[b] = 0;
+    for (int i = 0; i < kPixelsPerBlock; ++i) {
+      const int x = static_cast<int>(b) % kBlocksPerTileRow * kBlockSize + i % kBlockSize;
+      const int y = static_cast<int>(b) / kBlocksPerTileRow * kBlockSize + i / kBlockSize;
+      if (std::all_of(edges.begin(), edges.end(),
+                      [&](const TileEdge& edge) { return edge.least(x, y, 0) >= 0; }))
+        covered[b] |= PixelMask{1} << i;
+    }
+    if (covered[b]) touched |= BlockMask{1} << b;
+  });
+  return touched;
 }
 
-/// `always` or `never` if the ranges decide the comparison for every pair of their depths.
-CompareFunc decided(CompareFunc func, const DepthRangeUnits& fragment,
-                    const DepthRangeUnits& stored) {
-  const auto decide = [func](bool always, bool never) {
-    return always ? CompareFunc::always : never ? CompareFunc::never : func;
-  };
-  const bool apart = fragment.greatest < stored.least || fragment.least > stored.greatest;
-  const bool one = fragment.least == fragment.greatest && stored.least == stored.greatest &&
-                   fragment.least == stored.least;
+/// The blocks of a tile that a box in its pixels touches.
+BlockMask blocks_of(const PixelBox& box) {
+  const PixelBox blocks{box.x0 / kBlockSize, box.y0 / kBlockSize, (box.x1 - 1) / kBlockSize + 1,
+                        (box.y1 - 1) / kBlockSize + 1};
+  const BlockMask row = (0xffu >> (8 - (blocks.x1 - blocks.x0))) << blocks.x0;
+  const BlockMask rows = ~BlockMask{0} >> (64 - 8 * (blocks.y1 - blocks.y0)) << 8 * blocks.y0;
+  return row * 0x0101010101010101u & rows;
+}
+
+/// Slacks of Kernels::compare_ranges and what its masks then mean.
+struct Decision {
+  std::int32_t below_slack, above_slack;
+  bool below_passes, above_passes;
+  bool below_fails, above_fails;
+};
+
+Decision decision(CompareFunc func) {
   switch (func) {
     case CompareFunc::less:
-      return decide(fragment.greatest < stored.least, fragment.least >= stored.greatest);
+      return {0, 1, true, false, false, true};
     case CompareFunc::less_equal:
-      return decide(fragment.greatest <= stored.least, fragment.least > stored.greatest);
+      return {1, 0, true, false, false, true};
     case CompareFunc::greater:
-      return decide(fragment.least > stored.greatest, fragment.greatest <= stored.least);
+      return {1, 0, false, true, true, false};
     case CompareFunc::greater_equal:
-      return decide(fragment.least >= stored.greatest, fragment.greatest < stored.least);
+      return {0, 1, false, true, true, false};
     case CompareFunc::equal:
-      return decide(one, apart);
-    case CompareFunc::not_equal:
-      return decide(apart, one);
-    case CompareFunc::never:
-    case CompareFunc::always:
-      break;
+      return {0, 0, false, false, true, true};
+    default:
+      return {0, 0, true, true, false, false};
   }
-  return func;
 }
 
-/// Some fragment whose depth test ends so can leave a mark.
-bool leaves_a_mark(const FragmentTests& tests, bool color, bool depth_passes) {
-  if (depth_passes && (color || (tests.depth_test && tests.depth_write))) return true;
-  if (!tests.stencil_test || tests.stencil.write_mask == 0) return false;
-  const StencilFace& face = tests.stencil;
-  const StencilOp op = depth_passes ? face.pass : face.depth_fail;
-  return op != StencilOp::keep ||
-         (face.func != CompareFunc::always && face.fail != StencilOp::keep);
+bool decided_by_itself(CompareFunc func) {
+  return func == CompareFunc::always || func == CompareFunc::never;
 }
 
-class TriangleInTile {
- public:
-  TriangleInTile(const Kernels& kernels, const DrawSetup& setup, const FragmentSetup& fragments,
-                 const SetupTriangle& triangle, const Targets& targets, TileIndex tile,
-                 BlockRanges& ranges)
-      : kernels_(kernels),
-        setup_(setup),
-        fragments_(fragments),
-        triangle_(triangle),
-        targets_(targets),
-        tile_(tile),
-        ranges_(ranges),
-        tests_(triangle.front_facing ? fragments.front : fragments.back),
-        pass_marks_(leaves_a_mark(tests_, fragments.color, true)),
-        fail_marks_(leaves_a_mark(tests_, fragments.color, false)),
-        depth_(targets.depth ? targets.depth->plane().tile(tile.x, tile.y) : nullptr),
-        stencil_(targets.stencil ? targets.stencil->plane().tile(tile.x, tile.y) : nullptr) {}
+/// Bounds of the triangle's depths by those of its vertices, in depth units.
+std::pair<std::int32_t, std::int32_t> vertex_depths(const SetupTriangle& triangle,
+                                                    const DrawSetup& setup) {
+  const auto& v = triangle.vertices;
+  const auto [least, greatest] = std::minmax({v[0].z_fx, v[1].z_fx, v[2].z_fx});
+  const int bits = depth_fraction_bits(setup.depth_format);
+  const std::int64_t half = std::int64_t{1} << (bits - 1);
+  const auto units = [&](std::int64_t value) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(
+        (value + triangle.depth.offset + half) >> bits, setup.depth_low, setup.depth_high));
+  };
+  return {units(least - kPlaneError), units(greatest + kPlaneError)};
+}
 
-  void draw() {
-    const PixelBox box = intersect(triangle_.box, tile_box(tile_));
-    if (box.empty()) return;
-    const TileCover cover = cover_tile(triangle_, tile_, kernels_);
-    const int x0 = tile_.x * kTileSize, y0 = tile_.y * kTileSize;
-    const PixelBox blocks{(box.x0 - x0) / kBlockSize, (box.y0 - y0) / kBlockSize,
-                          (box.x1 - 1 - x0) / kBlockSize + 1, (box.y1 - 1 - y0) / kBlockSize + 1};
-    for_each_pixel(cover.touched & box_mask(blocks, 0, 0), [&](std::size_t block) {
-      draw_block(cover, block, (cover.filled >> block & 1) != 0);
-    });
+/// Bounds of the plane over a tile's blocks, if they are of use.
+void bound_plane(const TileDepth& plane, BlockDepths& depths) {
+  // Where the plane is so far from any depth, or so steep, the vertices' bounds must do.
+  constexpr std::int64_t kLimit = std::int64_t{1} << 27;
+  const std::int64_t one = std::int64_t{1} << plane.fraction_bits;
+  const auto base = static_cast<std::int64_t>(plane.base);
+  const auto dx = static_cast<std::int64_t>(plane.step_x);
+  const auto dy = static_cast<std::int64_t>(plane.step_y);
+  const auto within = [](std::int64_t value, std::int64_t limit) {
+    return value > -limit && value < limit;
+  };
+  if (!within(base, kLimit * one) || !within(dx, kLimit * one / 64) ||
+      !within(dy, kLimit * one / 64)) {
+    depths.low = depths.least;
+    depths.high = depths.greatest;
+    return;
   }
+  constexpr int kSpan = kBlockSize - 1;
+  const auto floor = [&](std::int64_t value) {
+    return static_cast<std::int32_t>(value >> plane.fraction_bits);
+  };
+  const auto ceil = [&](std::int64_t value) {
+    return static_cast<std::int32_t>(-(-value >> plane.fraction_bits));
+  };
+  depths.low =
+      floor(base + (std::min<std::int64_t>(dx, 0) + std::min<std::int64_t>(dy, 0)) * kSpan);
+  depths.low_step_x = floor(dx * kBlockSize);
+  depths.low_step_y = floor(dy * kBlockSize);
+  depths.high =
+      ceil(base + (std::max<std::int64_t>(dx, 0) + std::max<std::int64_t>(dy, 0)) * kSpan);
+  depths.high_step_x = ceil(dx * kBlockSize);
+  depths.high_step_y = ceil(dy * kBlockSize);
+}
 
- private:
-  void draw_block(const TileCover& cover, std::size_t block, bool filled) {
-    const int x = static_cast<int>(block) % kBlocksPerTileRow * kBlockSize;
-    const int y = static_cast<int>(block) / kBlocksPerTileRow * kBlockSize;
-    const std::size_t offset = block * kPixelsPerBlock;
-    FragmentTests tests = tests_;
-    if (tests.depth_test) {
-      if (tests.depth_func != CompareFunc::always && tests.depth_func != CompareFunc::never)
-        tests.depth_func = decided(tests.depth_func, fragment_range(x, y),
-                                   ranges_.of(block, depth_ + offset, kernels_));
-      if (tests.depth_func == CompareFunc::always && !pass_marks_) return;
-      if (tests.depth_func == CompareFunc::never && !fail_marks_) return;
-    }
-    PixelMask covered = filled ? kAllPixels : cover_block(cover, x, y, kernels_);
-    covered &= box_mask(setup_.box, tile_.x * kTileSize + x, tile_.y * kTileSize + y);
-    if (!covered) return;
-    BlockDepth plane;
-    if (tests.depth_test) {
-      plane = plane_at_tile();
-      plane.base += static_cast<std::uint64_t>(x) * plane.step_x +
-                    static_cast<std::uint64_t>(y) * plane.step_y;
-    }
-    const PixelMask passed =
-        kernels_.test_block(tests, covered, plane, depth_ ? depth_ + offset : nullptr,
-                            stencil_ ? stencil_ + offset : nullptr);
-    if (!passed) return;
-    if (tests.depth_test && tests.depth_write) ranges_.forget(block);
-    if (fragments_.color) color_block(passed, x, y, offset);
-  }
+/// A triangle that touches no more blocks than these is drawn without looking at its edges over the
+/// tile first.
+constexpr int kFewBlocks = 4;
 
-  const BlockDepth& plane_at_tile() {
-    if (!plane_) plane_ = depth_at_tile(setup_, triangle_.depth, tile_);
-    return *plane_;
-  }
-
-  /// Encloses the depths of the triangle's fragments in the block at (x, y) of the tile.
-  DepthRangeUnits fragment_range(int x, int y) const {
-    const auto [least, greatest] = triangle_.depth.range(
-        tile_.x * kTileSize + x, tile_.y * kTileSize + y, kBlockSize - 1, setup_.depth_format);
-    const double low = setup_.depth_low, high = setup_.depth_high;
-    return {static_cast<std::uint32_t>(std::clamp(least, low, high)),
-            static_cast<std::uint32_t>(std::clamp(greatest, low, high))};
-  }
-
-  void color_block(PixelMask passed, int x, int y, std::size_t offset) const {
-    const Draw& draw = *setup_.draw;
-    if (fragments_.constant) {
-      write_constant(kernels_, *targets_.color, tile_, offset, draw.state.color, passed,
-                     *fragments_.constant);
-      return;
-    }
-    write_block(kernels_, *targets_.color, tile_, offset, draw.state.color, passed,
-                [&](std::size_t i) {
-                  const int px = tile_.x * kTileSize + x + static_cast<int>(i) % kBlockSize,
-                            py = tile_.y * kTileSize + y + static_cast<int>(i) / kBlockSize;
-                  return shade(draw.shading, interpolate(draw, triangle_, px, py));
-                });
-  }
-
-  const Kernels& kernels_;
-  const DrawSetup& setup_;
-  const FragmentSetup& fragments_;
-  const SetupTriangle& triangle_;
-  const Targets& targets_;
-  const TileIndex tile_;
-  BlockRanges& ranges_;
-  const FragmentTests& tests_;
-  const bool pass_marks_, fail_marks_;
-  std::uint32_t* const depth_;
-  std::uint8_t* const stencil_;
-  std::optional<BlockDepth> plane_;
-};
+bool few(BlockMask blocks) { return __builtin_popcountll(blocks) <= kFewBlocks; }
 
 }  // namespace
 
 FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets) {
   FragmentSetup setup;
-  setup.front = resolve_tests(draw, targets, true);
-  setup.back = resolve_tests(draw, targets, false);
   setup.color = targets.color && any(draw.state.color.write);
+  setup.front = make_face_setup(resolve_tests(draw, targets, true), setup.color);
+  setup.back = make_face_setup(resolve_tests(draw, targets, false), setup.color);
+  for (const FaceSetup* face : {&setup.front, &setup.back}) {
+    const bool changes = writes_stencil(face->tests);
+    setup.keeps_stencil = setup.keeps_stencil && !changes;
+    setup.uses_stencil =
+        setup.uses_stencil || !stencil_test_passes_all(face->tests) || (changes && !face->counts);
+  }
   if (setup.color && is_constant(draw)) setup.constant = shade(draw.shading, Fragment{});
   return setup;
 }
 
-void draw_tile(const Kernels& kernels, const DrawSetup& setup, const FragmentSetup& fragments,
-               const SetupTriangle& triangle, const Targets& targets, TileIndex tile,
-               BlockRanges& ranges) noexcept {
-  TriangleInTile(kernels, setup, fragments, triangle, targets, tile, ranges).draw();
+DrawInTile::DrawInTile(const DrawSetup& setup, const FragmentSetup& fragments, TilePixels& pixels)
+    : setup_(setup),
+      fragments_(fragments),
+      pixels_(pixels),
+      kernels_(pixels.kernels()),
+      x0_(pixels.tile().x * kTileSize),
+      y0_(pixels.tile().y * kTileSize),
+      whole_(setup.box.x0 <= x0_ && setup.box.y0 <= y0_ && setup.box.x1 >= x0_ + kTileSize &&
+             setup.box.y1 >= y0_ + kTileSize) {
+  if (fragments.uses_stencil) pixels_.add_counts();
+}
+
+void DrawInTile::set_plane(const SetupTriangle& triangle, TestedBlocks& tested) const {
+  TileDepth& plane = tested.plane;
+  plane.fraction_bits = depth_fraction_bits(setup_.depth_format);
+  plane.base = depth_base_at(triangle.vertices, triangle.area, triangle.depth.offset, x0_, y0_) +
+               (std::uint64_t{1} << (plane.fraction_bits - 1));
+  plane.step_x = triangle.depth.step_x;
+  plane.step_y = triangle.depth.step_y;
+  plane.narrow = triangle.depth.narrow;
+  plane.low = setup_.depth_low;
+  plane.high = setup_.depth_high;
+}
+
+/// Finds the blocks whose depth test is decided as a whole and returns those that can still be
+/// marked; sets the plane if one of them needs it.
+BlockMask DrawInTile::decide(const SetupTriangle& triangle, const FaceSetup& face, BlockMask blocks,
+                             TestedBlocks& tested) {
+  const auto settle = [&](BlockMask passes, BlockMask fails) {
+    tested.depth_passes |= passes;
+    tested.depth_fails |= fails;
+    if (!face.pass_marks) blocks &= ~tested.depth_passes;
+    if (!face.fail_marks) blocks &= ~tested.depth_fails;
+  };
+  bool has_plane = false;
+  const CompareFunc func = face.tests.depth_func;
+  if (decided_by_itself(func)) {
+    settle(func == CompareFunc::always ? kAllBlocks : 0,
+           func == CompareFunc::never ? kAllBlocks : 0);
+  } else {
+    const Decision d = decision(func);
+    const auto [least, greatest] = vertex_depths(triangle, setup_);
+    BlockDepths depths{.low = least, .high = greatest, .least = least, .greatest = greatest};
+    const auto settle_ranges = [&](BlockMask below, BlockMask above) {
+      settle((d.below_passes ? below : 0) | (d.above_passes ? above : 0),
+             (d.below_fails ? below : 0) | (d.above_fails ? above : 0));
+    };
+    DepthRanges& ranges = pixels_.ranges();
+    if (!face.tests.depth_write) {
+      pixels_.know_whole_range();
+      const bool below = greatest < static_cast<std::int32_t>(ranges.whole_least) + d.below_slack;
+      const bool above = least > static_cast<std::int32_t>(ranges.whole_greatest) - d.above_slack;
+      settle_ranges(below ? kAllBlocks : 0, above ? kAllBlocks : 0);
+    } else {
+      pixels_.know_ranges(blocks);
+    }
+    if (blocks & ~(tested.depth_passes | tested.depth_fails)) {
+      if (!few(blocks)) {
+        set_plane(triangle, tested);
+        bound_plane(tested.plane, depths);
+        has_plane = true;
+      }
+      const DecidedBlocks decided = kernels_.compare_ranges(
+          depths, ranges.least.data(), ranges.greatest.data(), d.below_slack, d.above_slack);
+      settle_ranges(decided.below, decided.above);
+    }
+  }
+  const bool needs_plane =
+      face.tests.depth_write || (blocks & ~(tested.depth_passes | tested.depth_fails)) != 0;
+  if (blocks && needs_plane && !has_plane) set_plane(triangle, tested);
+  return blocks;
+}
+
+BlockMask DrawInTile::blocks_with_stencil(const FaceSetup& face) {
+  std::optional<BlockMask>& blocks = &face == &fragments_.front ? front_blocks_ : back_blocks_;
+  if (!blocks) blocks = kernels_.stencil_blocks(face.tests, pixels_.stencil());
+  return *blocks;
+}
+
+void DrawInTile::draw(const SetupTriangle& triangle,
+                      std::span<const PieceWeights> pieces) noexcept {
+  const FaceSetup& face = triangle.front_facing ? fragments_.front : fragments_.back;
+  if (!face.pass_marks && !face.fail_marks) return;
+  const PixelBox box = {std::max(triangle.box.x0 - x0_, 0), std::max(triangle.box.y0 - y0_, 0),
+                        std::min(triangle.box.x1 - x0_, kTileSize),
+                        std::min(triangle.box.y1 - y0_, kTileSize)};
+  if (box.empty()) return;
+  BlockMask blocks = blocks_of(box);
+  if (fragments_.keeps_stencil && !stencil_test_passes_all(face.tests)) {
+    blocks &= blocks_with_stencil(face);
+    if (!blocks) return;
+  }
+  TileEdges edges;
+  const Cover cover = cross_tile(triangle, x0_, y0_, edges);
+  if (cover == Cover::none) return;
+  BlockMask filled = 0;
+  if (edges.count == 0) {
+    filled = kAllBlocks;
+  } else if (cover == Cover::in_32_bits && !few(blocks)) {
+    blocks &= kernels_.cover_blocks(edges, filled);
+  }
+
+  TestedBlocks tested{.depth = pixels_.depth(), .stencil = pixels_.stencil()};
+  if (face.tests.depth_test) blocks = decide(triangle, face, blocks, tested);
+  if (!blocks) return;
+
+  if (face.counts && whole_) {
+    const BlockMask counted =
+        blocks & filled & (face.count_on_pass ? tested.depth_passes : tested.depth_fails);
+    if (counted) pixels_.count(counted, face.delta);
+    blocks &= ~counted;
+  }
+  std::array<PixelMask, kBlocksPerTile> covered;
+  for_each_block_of(blocks & filled, [&](std::size_t b) { covered[b] = kAllPixels; });
+  const BlockMask crossed = blocks & ~filled;
+  if (crossed)
+    blocks = (blocks & filled) |
+             (cover == Cover::in_32_bits
+                  ? kernels_.cover_pixels(edges, crossed, covered.data())
+                  : cover_pixels_in_64_bits(triangle, x0_, y0_, crossed, covered.data()));
+  if (!whole_)
+    for_each_block_of(blocks, [&](std::size_t b) {
+      covered[b] &= box_mask(setup_.box, x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize,
+                             y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize);
+    });
+  tested.blocks = blocks;
+  if (!blocks) return;
+  if (face.counts) {
+    kernels_.count_blocks(face.tests.depth_func, face.count_on_pass, face.delta, tested,
+                          covered.data());
+    return;
+  }
+  const BlockMask passed = kernels_.test_blocks(face.tests, tested, covered.data());
+  if (face.tests.depth_test && face.tests.depth_write)
+    for_each_block_of(passed, [&](std::size_t b) { pixels_.ranges().forget(b); });
+  if (fragments_.color) color_blocks(triangle, pieces, passed, covered.data());
+}
+
+void DrawInTile::color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
+                              BlockMask blocks, const PixelMask* passed) const {
+  const Draw& draw = *setup_.draw;
+  ColorBuffer& target = *pixels_.targets().color;
+  const ColorState& state = draw.state.color;
+  for_each_block_of(blocks, [&](std::size_t b) {
+    const std::size_t offset = b * kPixelsPerBlock;
+    if (fragments_.constant) {
+      write_constant(kernels_, target, pixels_.tile(), offset, state, passed[b],
+                     *fragments_.constant);
+      return;
+    }
+    const int x = x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize;
+    const int y = y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize;
+    write_block(kernels_, target, pixels_.tile(), offset, state, passed[b], [&](std::size_t i) {
+      const int px = x + static_cast<int>(i) % kBlockSize,
+                py = y + static_cast<int>(i) / kBlockSize;
+      return shade(draw.shading, interpolate(draw, triangle, pieces, px, py));
+    });
+  });
 }
 
 }  // namespace gnomon::raster

@@ -1,31 +1,69 @@
-// A triangle's pixels inside one 64x64 tile: which blocks it touches, which of those its depth
+// A draw's triangles inside one 64x64 tile: which blocks each touches, which of those its depth
 // decides as a whole, and the tests, stencil updates and colours of the rest.
 #pragma once
 
 #include <optional>
 
-#include "raster/block_ranges.h"
 #include "raster/frame.h"
 #include "raster/geometry.h"
 #include "raster/kernels.h"
-#include "raster/tile_blocks.h"
+#include "raster/tile_pixels.h"
 
 namespace gnomon::raster {
 
+/// What the fragments of one facing do, resolved once a draw.
+struct FaceSetup {
+  FragmentTests tests;
+  /// A fragment that passes (or fails) the depth test can leave a mark in some buffer.
+  bool pass_marks = false, fail_marks = false;
+  /// Nothing but the depth test decides and the only mark is `delta`, added modulo 256 to the
+  /// stencil of fragments that pass (count_on_pass) or fail it.
+  bool counts = false, count_on_pass = false;
+  std::uint8_t delta = 0;
+};
+
 /// What the fragments of a draw share, resolved once a draw.
 struct FragmentSetup {
-  FragmentTests front, back;
+  FaceSetup front, back;
   /// Colour reaches a target.
   bool color = false;
   /// The colour of all fragments, if they have one.
   std::optional<glm::vec4> constant;
+  /// The stencil is read, or written otherwise than by counts.
+  bool uses_stencil = false;
+  /// No fragment changes the stencil.
+  bool keeps_stencil = true;
 };
 
 FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets);
 
-/// Draws the triangle's pixels inside the tile. `ranges` are those of the targets' depth buffer.
-void draw_tile(const Kernels& kernels, const DrawSetup& setup, const FragmentSetup& fragments,
-               const SetupTriangle& triangle, const Targets& targets, TileIndex tile,
-               BlockRanges& ranges) noexcept;
+/// A draw on its way through one tile.
+class DrawInTile {
+ public:
+  /// Precondition: `pixels` uses the draw's targets.
+  DrawInTile(const DrawSetup& setup, const FragmentSetup& fragments, TilePixels& pixels);
+
+  /// Draws the triangle's pixels inside the tile. `pieces` are those of its SetupTriangles.
+  void draw(const SetupTriangle& triangle, std::span<const PieceWeights> pieces) noexcept;
+
+ private:
+  BlockMask decide(const SetupTriangle& triangle, const FaceSetup& face, BlockMask blocks,
+                   TestedBlocks& tested);
+  void set_plane(const SetupTriangle& triangle, TestedBlocks& tested) const;
+  BlockMask blocks_with_stencil(const FaceSetup& face);
+  void color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
+                    BlockMask blocks, const PixelMask* passed) const;
+
+  const DrawSetup& setup_;
+  const FragmentSetup& fragments_;
+  TilePixels& pixels_;
+  const Kernels& kernels_;
+  /// The tile's first pixel.
+  const int x0_, y0_;
+  /// The draw's box lies around the whole tile.
+  const bool whole_;
+  /// Blocks whose stencil lets a fragment of the front (back) through; computed when needed.
+  std::optional<BlockMask> front_blocks_, back_blocks_;
+};
 
 }  // namespace gnomon::raster

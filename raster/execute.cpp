@@ -1,27 +1,26 @@
 // Commands are run in groups: all passes in a row whose targets have one size, cut where a depth
 // buffer that was drawn into is looked up, and where a group's set-up triangles would take too much
-// memory. Inside a group the front end sets up every draw's
-// triangles and bins them, then each tile runs all commands of all passes while its pixels are in
-// cache.
+// memory. Inside a group the front end brings all vertices to the window, then sets up and bins all
+// triangles, then each tile runs all commands of all passes while its pixels are in cache.
 #include "raster/execute.h"
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
-#include "raster/block_ranges.h"
 #include "raster/check.h"
+#include "raster/draw_geometry.h"
 #include "raster/draw_tile.h"
 #include "raster/executor.h"
-#include "raster/geometry.h"
 #include "raster/tile.h"
 
 namespace gnomon::raster {
 
 namespace {
 
-constexpr std::size_t kVerticesPerChunk = 4096;
-constexpr std::size_t kTrianglesPerChunk = 1024;
-/// A group ends when its draws have so many triangles (a set-up triangle takes some 300 bytes), or
-/// so many commands (a bin a tile each).
+constexpr std::size_t kVerticesPerChunk = 2048;
+/// A group ends when its draws have so many triangles (a set-up triangle takes some 200 bytes), or
+/// so many commands.
 constexpr std::size_t kTrianglesPerGroup = std::size_t{1} << 21, kCommandsPerGroup = 512;
 
 struct Size {
@@ -33,75 +32,95 @@ struct Size {
 
 Size size_of(const Targets& targets) { return {targets.width(), targets.height()}; }
 
-/// A command with its pass's targets; for a draw also its set-up triangles and, a tile, the numbers
-/// of those that touch it.
+/// A command with its pass's targets; for a draw also its set-up and where its triangles are.
 struct Job {
   const Command* command = nullptr;
   Targets targets = {};
   DrawSetup setup = {};
   FragmentSetup fragments = {};
-  std::vector<std::vector<SetupTriangle>> chunks = {};
-  std::vector<std::vector<const SetupTriangle*>> bins = {};
+  std::size_t geometry = 0;
 };
 
-void set_up_draw(Job& job, const Kernels& kernels, int threads) {
-  const Draw& draw = std::get<Draw>(*job.command);
-  job.setup = make_draw_setup(draw, job.targets);
-  job.fragments = make_fragment_setup(draw, job.targets);
-  std::vector<glm::vec4> clip(draw.mesh.positions.size());
-  for_each_chunk(clip.size(), kVerticesPerChunk, threads, [&](std::size_t first, std::size_t last) {
-    kernels.transform(draw.clip_from_model, draw.mesh.positions.data() + first, last - first,
-                      clip.data() + first);
-  });
-  const std::size_t triangles = draw.mesh.indices.size() / 3;
-  job.chunks.resize((triangles + kTrianglesPerChunk - 1) / kTrianglesPerChunk);
-  for_each_chunk(triangles, kTrianglesPerChunk, threads, [&](std::size_t first, std::size_t last) {
-    set_up_triangles(job.setup, clip, first, last - first, job.chunks[first / kTrianglesPerChunk]);
-  });
+/// Vertices [first, last) of a draw's geometry, or its chunk `first`.
+struct Task {
+  DrawGeometry* geometry;
+  std::size_t first, last;
+};
+
+}  // namespace
+
+struct ExecuteMemory::Parts {
+  std::vector<Job> jobs;
+  /// The first geometry_count of them are in use.
+  std::vector<std::unique_ptr<DrawGeometry>> geometries;
+  std::size_t geometry_count = 0;
+  std::vector<Task> tasks;
+};
+
+ExecuteMemory::ExecuteMemory() : parts_(std::make_unique<Parts>()) {}
+ExecuteMemory::~ExecuteMemory() = default;
+
+namespace {
+
+using Memory = ExecuteMemory::Parts;
+
+/// Finds the geometry that serves a draw, or begins one.
+std::size_t geometry_of(Memory& memory, const DrawSetup& setup) {
+  for (std::size_t i = 0; i < memory.geometry_count; ++i)
+    if (memory.geometries[i]->serves(setup)) return i;
+  if (memory.geometry_count == memory.geometries.size())
+    memory.geometries.push_back(std::make_unique<DrawGeometry>());
+  memory.geometries[memory.geometry_count]->begin(setup);
+  return memory.geometry_count++;
 }
 
-/// True unless one edge keeps the whole tile out.
-bool touches_tile(const SetupTriangle& triangle, int tile_x, int tile_y) {
-  constexpr std::int64_t kSpan = (kTileSize - 1) * 256;
-  for (int k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const std::int64_t corner = triangle.edge(k, tile_x * std::int64_t{kTileSize * 256} + 128,
-                                              tile_y * std::int64_t{kTileSize * 256} + 128);
-    const std::int64_t highest = corner + std::max<std::int64_t>(triangle.a[i], 0) * kSpan +
-                                 std::max<std::int64_t>(triangle.b[i], 0) * kSpan;
-    if (highest < triangle.bias[i]) return false;
+void set_up_draws(Memory& memory, const Kernels& kernels, int threads) {
+  memory.geometry_count = 0;
+  for (Job& job : memory.jobs) {
+    const Draw* draw = std::get_if<Draw>(job.command);
+    if (!draw) continue;
+    job.setup = make_draw_setup(*draw, job.targets);
+    job.fragments = make_fragment_setup(*draw, job.targets);
+    job.geometry = geometry_of(memory, job.setup);
   }
-  return true;
+  std::vector<Task>& tasks = memory.tasks;
+  const auto each_task = [&](auto run) {
+    for_each_chunk(tasks.size(), 1, threads,
+                   [&](std::size_t first, std::size_t) { run(tasks[first]); });
+    tasks.clear();
+  };
+  for (std::size_t g = 0; g < memory.geometry_count; ++g) {
+    const std::size_t count = memory.geometries[g]->vertex_count();
+    for (std::size_t i = 0; i < count; i += kVerticesPerChunk)
+      tasks.push_back({memory.geometries[g].get(), i, std::min(count, i + kVerticesPerChunk)});
+  }
+  each_task([&](const Task& task) { task.geometry->run_vertices(kernels, task.first, task.last); });
+  for (std::size_t g = 0; g < memory.geometry_count; ++g)
+    for (std::size_t chunk = 0; chunk < memory.geometries[g]->chunk_count(); ++chunk)
+      tasks.push_back({memory.geometries[g].get(), chunk, chunk + 1});
+  each_task([](const Task& task) { task.geometry->run_chunk(task.first); });
 }
 
-void bin_draw(Job& job, const Size& size) {
-  job.bins.resize(static_cast<std::size_t>(size.tiles_x()) * size.tiles_y());
-  for (const std::vector<SetupTriangle>& chunk : job.chunks)
-    for (const SetupTriangle& triangle : chunk) {
-      const PixelBox& box = triangle.box;
-      for (int ty = box.y0 / kTileSize; ty <= (box.y1 - 1) / kTileSize; ++ty)
-        for (int tx = box.x0 / kTileSize; tx <= (box.x1 - 1) / kTileSize; ++tx)
-          if (touches_tile(triangle, tx, ty))
-            job.bins[static_cast<std::size_t>(ty) * size.tiles_x() + tx].push_back(&triangle);
+void draw_in_tile(const Job& job, const DrawGeometry& geometry, TilePixels& pixels) {
+  std::optional<DrawInTile> draw;
+  for (const TriangleChunk& chunk : geometry.chunks())
+    for (const std::uint32_t number : chunk.bins.of(pixels.tile())) {
+      if (!draw) draw.emplace(job.setup, job.fragments, pixels);
+      draw->draw(chunk.set_up.triangles[number], chunk.set_up.pieces);
     }
 }
 
-void run_tile(const std::vector<Job>& jobs, const Kernels& kernels, std::size_t tile,
-              const Size& size) {
-  const TileIndex index{static_cast<int>(tile) % size.tiles_x(),
-                        static_cast<int>(tile) / size.tiles_x()};
-  BlockRanges ranges;
-  for (const Job& job : jobs) {
-    ranges.use(job.targets.depth);
-    if (const Clear* clear = std::get_if<Clear>(job.command)) {
-      clear_tile(kernels, *clear, job.targets, index);
-      ranges.forget_all();
-    } else if (const Blit* blit = std::get_if<Blit>(job.command)) {
-      blit_tile(kernels, *blit, job.targets, index);
-    } else {
-      for (const SetupTriangle* triangle : job.bins[tile])
-        draw_tile(kernels, job.setup, job.fragments, *triangle, job.targets, index, ranges);
-    }
+void run_tile(const Memory& memory, const Kernels& kernels, std::size_t tile, const Size& size) {
+  TilePixels pixels(
+      kernels, {static_cast<int>(tile) % size.tiles_x(), static_cast<int>(tile) / size.tiles_x()});
+  for (const Job& job : memory.jobs) {
+    pixels.use(job.targets);
+    if (const Clear* clear = std::get_if<Clear>(job.command))
+      clear_tile(*clear, pixels);
+    else if (const Blit* blit = std::get_if<Blit>(job.command))
+      blit_tile(*blit, pixels);
+    else
+      draw_in_tile(job, *memory.geometries[job.geometry], pixels);
   }
 }
 
@@ -137,15 +156,13 @@ bool must_wait(const std::vector<Job>& jobs, const Command& command, const Targe
   return wait;
 }
 
-void run_group(std::vector<Job>& jobs, const Size& size, const Kernels& kernels, int threads) {
-  for (Job& job : jobs)
-    if (std::holds_alternative<Draw>(*job.command)) set_up_draw(job, kernels, threads);
-  for_each_chunk(jobs.size(), 1, threads, [&](std::size_t first, std::size_t) {
-    if (std::holds_alternative<Draw>(*jobs[first].command)) bin_draw(jobs[first], size);
-  });
+void run_group(Memory& memory, const Size& size, const Kernels& kernels, int threads) {
+  if (memory.jobs.empty()) return;
+  set_up_draws(memory, kernels, threads);
   const std::size_t tiles = static_cast<std::size_t>(size.tiles_x()) * size.tiles_y();
   for_each_chunk(tiles, 1, threads,
-                 [&](std::size_t first, std::size_t) { run_tile(jobs, kernels, first, size); });
+                 [&](std::size_t first, std::size_t) { run_tile(memory, kernels, first, size); });
+  memory.jobs.clear();
 }
 
 }  // namespace
@@ -153,12 +170,14 @@ void run_group(std::vector<Job>& jobs, const Size& size, const Kernels& kernels,
 void execute(const Frame& frame, const ExecuteOptions& options) {
   require(options.threads >= 0, "a number of threads is not negative");
   const Kernels& kernels = raster::kernels(options.isa);
-  std::vector<Job> jobs;
+  std::optional<ExecuteMemory> own;
+  Memory& memory = *(options.memory ? *options.memory : own.emplace()).parts_;
+  std::vector<Job>& jobs = memory.jobs;
+  jobs.clear();
   Size size;
   std::size_t number = 0, triangles = 0;
   const auto finish_group = [&] {
-    run_group(jobs, size, kernels, options.threads);
-    jobs.clear();
+    run_group(memory, size, kernels, options.threads);
     triangles = 0;
   };
   for (const Pass& pass : frame.passes()) {

@@ -17,12 +17,6 @@ constexpr std::int64_t kMaxCoordinate = std::int64_t{1} << 24;
 /// The guard band reaches this many pixels beyond the viewport's centre.
 constexpr double kGuardPixels = 16384.0;
 
-struct ProjectedVertex {
-  SnappedVertex snapped;
-  double inverse_w = 1.0;
-  glm::dvec3 weights{0.0};
-};
-
 std::int32_t snap(double window) {
   constexpr auto kLimit = static_cast<double>(kMaxCoordinate);
   return static_cast<std::int32_t>(round_to_nearest(std::clamp(window * 256.0, -kLimit, kLimit)));
@@ -39,7 +33,7 @@ std::int64_t snap_depth(double depth, const DrawSetup& setup) {
   return std::clamp(z_fx, static_cast<std::int64_t>(0), static_cast<std::int64_t>(one));
 }
 
-ProjectedVertex project(const glm::dvec4& clip, const glm::dvec3& weights, const DrawSetup& setup) {
+ProjectedVertex project(const glm::dvec4& clip, const DrawSetup& setup) {
   const Rect& viewport = setup.viewport;
   const DepthRange& range = setup.draw->state.depth_range;
   const double half_width = viewport.width * 0.5, half_height = viewport.height * 0.5;
@@ -51,7 +45,6 @@ ProjectedVertex project(const glm::dvec4& clip, const glm::dvec3& weights, const
   out.snapped.y_fx = snap((clip.y / clip.w) * half_height + (viewport.y + half_height));
   out.snapped.z_fx = snap_depth((clip.z / clip.w) * half_depth + mid_depth, setup);
   out.inverse_w = 1.0 / clip.w;
-  out.weights = weights;
   return out;
 }
 
@@ -65,60 +58,83 @@ bool culled(Cull cull, bool front_facing) {
          (cull == Cull::back && !front_facing);
 }
 
+/// A corner of a polygon that clipping left.
+struct Corner {
+  ProjectedVertex vertex;
+  glm::dvec3 weights{0.0};
+};
+
+/// A piece's weights once its vertices are counter-clockwise.
+PieceWeights weights_of(const std::array<const Corner*, 3>& corners, bool swapped) {
+  return {corners[0]->weights, corners[swapped ? 2 : 1]->weights,
+          corners[swapped ? 1 : 2]->weights};
+}
+
 /// Sets up one snapped triangle; false if it covers no pixel or is culled.
-bool set_up(const DrawSetup& setup, std::array<ProjectedVertex, 3> v, std::uint32_t first_index,
-            SetupTriangle& out) {
-  const auto [x_min, x_max] =
-      std::minmax({v[0].snapped.x_fx, v[1].snapped.x_fx, v[2].snapped.x_fx});
-  const auto [y_min, y_max] =
-      std::minmax({v[0].snapped.y_fx, v[1].snapped.y_fx, v[2].snapped.y_fx});
+bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVertex& v1,
+            const ProjectedVertex& v2, SetupTriangle& out) {
+  const SnappedVertex &s0 = v0.snapped, &s1 = v1.snapped, &s2 = v2.snapped;
+  const auto [x_min, x_max] = std::minmax({s0.x_fx, s1.x_fx, s2.x_fx});
+  const auto [y_min, y_max] = std::minmax({s0.y_fx, s1.y_fx, s2.y_fx});
   out.box = intersect(setup.box,
                       {first_pixel(x_min), first_pixel(y_min), end_pixel(x_max), end_pixel(y_max)});
   if (out.box.empty()) return false;
 
-  const std::int64_t dx1 = v[1].snapped.x_fx - v[0].snapped.x_fx;
-  const std::int64_t dy1 = v[1].snapped.y_fx - v[0].snapped.y_fx;
-  const std::int64_t dx2 = v[2].snapped.x_fx - v[0].snapped.x_fx;
-  const std::int64_t dy2 = v[2].snapped.y_fx - v[0].snapped.y_fx;
-  std::int64_t area = dx1 * dy2 - dx2 * dy1;
+  const std::int64_t dx1 = s1.x_fx - s0.x_fx, dy1 = s1.y_fx - s0.y_fx;
+  const std::int64_t dx2 = s2.x_fx - s0.x_fx, dy2 = s2.y_fx - s0.y_fx;
+  const std::int64_t area = dx1 * dy2 - dx2 * dy1;
   if (area == 0) return false;
   const State& state = setup.draw->state;
   out.front_facing = (area > 0) == (state.front_face == FrontFace::ccw);
   if (culled(state.cull, out.front_facing)) return false;
-  if (area < 0) {
-    std::swap(v[1], v[2]);
-    area = -area;
-  }
-
-  for (std::size_t k = 0; k < 3; ++k) {
-    const SnappedVertex& from = v[(k + 1) % 3].snapped;
-    const SnappedVertex& to = v[(k + 2) % 3].snapped;
-    const std::int32_t dx = to.x_fx - from.x_fx, dy = to.y_fx - from.y_fx;
-    out.a[k] = -dy;
-    out.b[k] = dx;
-    out.c[k] =
-        static_cast<std::int64_t>(dy) * from.x_fx - static_cast<std::int64_t>(dx) * from.y_fx;
-    // Counter-clockwise with y upwards: a left edge goes down, a bottom edge goes right.
-    out.bias[k] = dy < 0 || (dy == 0 && dx > 0) ? 0 : 1;
-    out.attributes.inverse_w[k] = v[k].inverse_w;
-    out.attributes.weights[k] = v[k].weights;
-  }
-  out.attributes.first_index = first_index;
-  out.depth =
-      make_depth_plane({v[0].snapped, v[1].snapped, v[2].snapped}, area, state.polygon_offset,
-                       setup.depth_format, setup.depth_low, setup.depth_high);
+  out.swapped = area < 0;
+  out.area = std::abs(area);
+  const ProjectedVertex &second = out.swapped ? v2 : v1, &third = out.swapped ? v1 : v2;
+  out.vertices = {s0, second.snapped, third.snapped};
+  out.inverse_w = {v0.inverse_w, second.inverse_w, third.inverse_w};
+  out.depth = make_depth_plane(out.vertices, out.area, state.polygon_offset, setup.depth_format,
+                               setup.depth_low, setup.depth_high);
   return true;
 }
 
-bool before(const ProjectedVertex& a, const ProjectedVertex& b) {
-  const auto key = [](const ProjectedVertex& v) {
-    return std::tuple(v.snapped.x_fx, v.snapped.y_fx, v.snapped.z_fx);
+bool before(const Corner& a, const Corner& b) {
+  const auto key = [](const Corner& corner) {
+    const SnappedVertex& v = corner.vertex.snapped;
+    return std::tuple(v.x_fx, v.y_fx, v.z_fx);
   };
   return key(a) < key(b);
 }
 
 bool finite(const glm::vec4& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
+
+ClipVolume clip_volume(const DrawSetup& setup) {
+  return {2.0 * kGuardPixels / setup.viewport.width, 2.0 * kGuardPixels / setup.viewport.height,
+          !setup.draw->state.depth_clamp};
+}
+
+/// Appends the pieces that clipping leaves of a triangle; `triangle` names the mesh's one.
+void set_up_pieces(const DrawSetup& setup, const ClipVolume& volume,
+                   const std::array<glm::vec4, 3>& clip, SetupTriangle triangle,
+                   SetupTriangles& out) {
+  const ClippedPolygon polygon = clip_triangle(clip, volume);
+  const auto count = static_cast<std::size_t>(polygon.count);
+  std::array<Corner, 10> corners;
+  for (std::size_t i = 0; i < count; ++i)
+    corners[i] = {project(polygon.vertices[i].position, setup), polygon.vertices[i].weights};
+  // The fan starts at one and the same vertex however the triangle was given, so its pieces, and
+  // with them its depth bits, do not depend on the order of its vertices or on its winding.
+  if (count > 3)
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.begin() + count, before),
+                corners.begin() + count);
+  for (std::size_t i = 2; i < count; ++i) {
+    const std::array<const Corner*, 3> piece{&corners[0], &corners[i - 1], &corners[i]};
+    if (!set_up(setup, piece[0]->vertex, piece[1]->vertex, piece[2]->vertex, triangle)) continue;
+    triangle.piece = static_cast<std::uint32_t>(out.pieces.size());
+    out.pieces.push_back(weights_of(piece, triangle.swapped));
+    out.triangles.push_back(triangle);
+  }
 }
 
 }  // namespace
@@ -153,37 +169,39 @@ DrawSetup make_draw_setup(const Draw& draw, const Targets& targets) {
   return setup;
 }
 
-void set_up_triangles(const DrawSetup& setup, std::span<const glm::vec4> clip, std::size_t first,
-                      std::size_t count, std::vector<SetupTriangle>& out) {
-  const std::span<const std::uint32_t> indices = setup.draw->mesh.indices;
-  const ClipVolume volume{2.0 * kGuardPixels / setup.viewport.width,
-                          2.0 * kGuardPixels / setup.viewport.height,
-                          !setup.draw->state.depth_clamp};
+void project_vertices(const DrawSetup& setup, DrawVertices& vertices, std::size_t first,
+                      std::size_t last) {
+  const ClipVolume volume = clip_volume(setup);
+  for (std::size_t i = first; i < last; ++i) {
+    const glm::vec4& clip = vertices.clip[i];
+    vertices.places[i] = !finite(clip)           ? VertexPlace::not_finite
+                         : volume.contains(clip) ? VertexPlace::inside
+                                                 : VertexPlace::outside;
+    if (vertices.places[i] == VertexPlace::inside) vertices.projected[i] = project(clip, setup);
+  }
+}
+
+void set_up_triangles(const DrawSetup& setup, const DrawVertices& vertices, std::size_t first,
+                      std::size_t count, SetupTriangles& out) {
+  const std::uint32_t* const indices = setup.draw->mesh.indices.data();
+  const ClipVolume volume = clip_volume(setup);
   SetupTriangle triangle;
   for (std::size_t t = first; t < first + count; ++t) {
-    const auto first_index = static_cast<std::uint32_t>(3 * t);
-    const std::array<glm::vec4, 3> p{clip[indices[3 * t]], clip[indices[3 * t + 1]],
-                                     clip[indices[3 * t + 2]]};
-    if (!finite(p[0]) || !finite(p[1]) || !finite(p[2])) continue;
-    if (volume.contains(p[0]) && volume.contains(p[1]) && volume.contains(p[2])) {
-      const std::array<ProjectedVertex, 3> v{project(p[0], {1.0, 0.0, 0.0}, setup),
-                                             project(p[1], {0.0, 1.0, 0.0}, setup),
-                                             project(p[2], {0.0, 0.0, 1.0}, setup)};
-      if (set_up(setup, v, first_index, triangle)) out.push_back(triangle);
+    const std::uint32_t *const corner = indices + 3 * t, a = corner[0], b = corner[1],
+                               c = corner[2];
+    const VertexPlace worst =
+        std::max({vertices.places[a], vertices.places[b], vertices.places[c]});
+    if (worst == VertexPlace::not_finite) continue;
+    triangle.first_index = static_cast<std::uint32_t>(3 * t);
+    if (worst == VertexPlace::outside) {
+      set_up_pieces(setup, volume, {vertices.clip[a], vertices.clip[b], vertices.clip[c]}, triangle,
+                    out);
       continue;
     }
-    const ClippedPolygon polygon = clip_triangle(p, volume);
-    const auto corners = static_cast<std::size_t>(polygon.count);
-    std::array<ProjectedVertex, 10> v;
-    for (std::size_t i = 0; i < corners; ++i)
-      v[i] = project(polygon.vertices[i].position, polygon.vertices[i].weights, setup);
-    // The fan starts at one and the same vertex however the triangle was given, so its pieces, and
-    // with them its depth bits, do not depend on the order of its vertices or on its winding.
-    if (corners > 3)
-      std::rotate(v.begin(), std::min_element(v.begin(), v.begin() + corners, before),
-                  v.begin() + corners);
-    for (std::size_t i = 2; i < corners; ++i)
-      if (set_up(setup, {v[0], v[i - 1], v[i]}, first_index, triangle)) out.push_back(triangle);
+    triangle.piece = SetupTriangle::kWhole;
+    if (set_up(setup, vertices.projected[a], vertices.projected[b], vertices.projected[c],
+               triangle))
+      out.triangles.push_back(triangle);
   }
 }
 

@@ -25,30 +25,56 @@ PixelBox intersect(const PixelBox& a, const PixelBox& b);
 /// The scissor's pixels inside a target of this size.
 PixelBox scissor_box(const std::optional<Rect>& scissor, int width, int height);
 
-/// What the fragments of a triangle need to interpolate: the mesh's triangle, 1/w of the snapped
-/// vertices, and (for a piece of a clipped triangle) their weights over the mesh's triangle.
-struct Attributes {
-  std::uint32_t first_index = 0;
-  std::array<double, 3> inverse_w{};
-  std::array<glm::dvec3, 3> weights{};
+/// Weights of the vertices of a piece of a clipped triangle over the mesh's triangle.
+using PieceWeights = std::array<glm::dvec3, 3>;
+
+/// Edge k of a triangle, opposite to vertex k: E(x, y) = a (x - x0) + b (y - y0) over 24.8
+/// coordinates, positive inside; the three sum to the area. A pixel is covered where E - bias >= 0
+/// for each at its centre; bias is 0 on left and bottom edges, 1 on others.
+struct Edge {
+  std::int32_t a, b, x0, y0;
+
+  std::int64_t at(std::int64_t x_fx, std::int64_t y_fx) const {
+    return a * (x_fx - x0) + b * (y_fx - y0);
+  }
+  // Counter-clockwise with y upwards: a left edge goes down, a bottom edge goes right.
+  int bias() const { return a > 0 || (a == 0 && b > 0) ? 0 : 1; }
 };
 
-/// A triangle ready for the tiles. Edge k is opposite to vertex k:
-///   E_k(x, y) = a x + b y + c over 24.8 coordinates, positive inside; E_0 + E_1 + E_2 = area.
-/// A pixel is covered where E_k - bias_k >= 0 for each k at its centre; bias is 0 on top and left
-/// edges, 1 on others.
+/// A triangle ready for the tiles, its vertices counter-clockwise.
 struct SetupTriangle {
-  std::array<std::int32_t, 3> a{}, b{};
-  std::array<std::int64_t, 3> c{};
-  std::array<std::uint8_t, 3> bias{};
-  bool front_facing = true;
-  PixelBox box;
-  DepthPlane depth;
-  Attributes attributes;
+  static constexpr std::uint32_t kWhole = 0xffffffff;
 
-  std::int64_t edge(int k, std::int64_t x_fx, std::int64_t y_fx) const {
-    const auto i = static_cast<std::size_t>(k);
-    return a[i] * x_fx + b[i] * y_fx + c[i];
+  std::array<SnappedVertex, 3> vertices;
+  /// Twice its area, positive.
+  std::int64_t area = 1;
+  DepthPlane depth;
+  PixelBox box;
+  /// The mesh's triangle is at this place among its indices.
+  std::uint32_t first_index = 0;
+  /// Where its weights stand among the pieces; kWhole if it is the mesh's triangle.
+  std::uint32_t piece = kWhole;
+  bool front_facing = true;
+  /// Vertices 1 and 2 are the mesh's 2 and 1.
+  bool swapped = false;
+  /// 1/w of the vertices.
+  std::array<double, 3> inverse_w{};
+
+  Edge edge(int k) const {
+    const SnappedVertex& from = vertices[static_cast<std::size_t>((k + 1) % 3)];
+    const SnappedVertex& to = vertices[static_cast<std::size_t>((k + 2) % 3)];
+    return {from.y_fx - to.y_fx, to.x_fx - from.x_fx, from.x_fx, from.y_fx};
+  }
+};
+
+/// Set-up triangles in the order of the mesh, with the weights of those that are pieces.
+struct SetupTriangles {
+  std::vector<SetupTriangle> triangles;
+  std::vector<PieceWeights> pieces;
+
+  void clear() {
+    triangles.clear();
+    pieces.clear();
   }
 };
 
@@ -64,9 +90,35 @@ struct DrawSetup {
 
 DrawSetup make_draw_setup(const Draw& draw, const Targets& targets);
 
+/// A vertex inside the clip volume, projected and snapped; others are clipped first.
+struct ProjectedVertex {
+  SnappedVertex snapped;
+  double inverse_w = 1.0;
+};
+
+/// Where a vertex in clip space is.
+enum class VertexPlace : std::uint8_t { inside, outside, not_finite };
+
+/// The vertices of a draw after the front end's first step, one a position.
+struct DrawVertices {
+  std::vector<glm::vec4> clip;
+  std::vector<ProjectedVertex> projected;
+  std::vector<VertexPlace> places;
+
+  void resize(std::size_t count) {
+    clip.resize(count);
+    projected.resize(count);
+    places.resize(count);
+  }
+};
+
+/// Fills places and projected of vertices [first, last) from their clip-space positions.
+void project_vertices(const DrawSetup& setup, DrawVertices& vertices, std::size_t first,
+                      std::size_t last);
+
 /// Appends the set-up triangles of mesh triangles [first, first + count), in order, without those
-/// that cover no pixel. `clip` holds the clip-space positions of all vertices of the draw.
-void set_up_triangles(const DrawSetup& setup, std::span<const glm::vec4> clip, std::size_t first,
-                      std::size_t count, std::vector<SetupTriangle>& out);
+/// that cover no pixel.
+void set_up_triangles(const DrawSetup& setup, const DrawVertices& vertices, std::size_t first,
+                      std::size_t count, SetupTriangles& out);
 
 }  // namespace gnomon::raster

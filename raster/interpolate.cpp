@@ -5,17 +5,20 @@ namespace gnomon::raster {
 namespace {
 
 /// Perspective-correct weights of the mesh triangle's three vertices.
-glm::vec3 vertex_weights(const SetupTriangle& triangle, int x, int y) {
+glm::vec3 vertex_weights(const SetupTriangle& triangle, std::span<const PieceWeights> pieces, int x,
+                         int y) {
   const std::int64_t x_fx = x * std::int64_t{256} + 128, y_fx = y * std::int64_t{256} + 128;
-  const Attributes& at = triangle.attributes;
-  const double area = static_cast<double>(triangle.depth.area);
-  const double q0 = static_cast<double>(triangle.edge(0, x_fx, y_fx)) / area * at.inverse_w[0];
-  const double q1 = static_cast<double>(triangle.edge(1, x_fx, y_fx)) / area * at.inverse_w[1];
-  const double q2 = static_cast<double>(triangle.edge(2, x_fx, y_fx)) / area * at.inverse_w[2];
-  const double sum = (q0 + q1) + q2;
-  const glm::dvec3 weights =
-      (at.weights[0] * (q0 / sum) + at.weights[1] * (q1 / sum)) + at.weights[2] * (q2 / sum);
-  return glm::vec3(weights);
+  const double area = static_cast<double>(triangle.area);
+  std::array<double, 3> q;
+  for (std::size_t k = 0; k < 3; ++k)
+    q[k] = static_cast<double>(triangle.edge(static_cast<int>(k)).at(x_fx, y_fx)) / area *
+           triangle.inverse_w[k];
+  const double sum = (q[0] + q[1]) + q[2];
+  const double w0 = q[0] / sum, w1 = q[1] / sum, w2 = q[2] / sum;
+  if (triangle.piece == SetupTriangle::kWhole)
+    return triangle.swapped ? glm::vec3(w0, w2, w1) : glm::vec3(w0, w1, w2);
+  const PieceWeights& weights = pieces[triangle.piece];
+  return glm::vec3((weights[0] * w0 + weights[1] * w1) + weights[2] * w2);
 }
 
 template <class T>
@@ -39,7 +42,8 @@ glm::vec3 world_position(const glm::mat4& m, const glm::vec4& p) {
 
 }  // namespace
 
-Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, int x, int y) noexcept {
+Fragment interpolate(const Draw& draw, const SetupTriangle& triangle,
+                     std::span<const PieceWeights> pieces, int x, int y) noexcept {
   Fragment fragment;
   fragment.front_facing = triangle.front_facing;
   const MeshView& mesh = draw.mesh;
@@ -47,8 +51,8 @@ Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, int x, int
   const Flat* flat = std::get_if<Flat>(&draw.shading);
   if (flat && mesh.colors.empty() && !flat->texture && !flat->depth_lookup) return fragment;
 
-  const glm::vec3 p = vertex_weights(triangle, x, y);
-  const std::uint32_t* index = mesh.indices.data() + triangle.attributes.first_index;
+  const glm::vec3 p = vertex_weights(triangle, pieces, x, y);
+  const std::uint32_t* index = mesh.indices.data() + triangle.first_index;
   if (!mesh.colors.empty()) fragment.color = weighted(mesh.colors, index, p);
   if (!mesh.texcoords.empty()) fragment.texcoord = weighted(mesh.texcoords, index, p);
   if (flat && flat->depth_lookup) fragment.model = weighted(mesh.positions, index, p);

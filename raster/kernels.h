@@ -1,8 +1,8 @@
-// The kernel boundary: what happens to the 64 pixels of an 8x8 block. Everything here is integer; a
-// set of pixels is a 64-bit mask, bit 8 y + x for pixel (x, y) of the block, and planes are
-// block-linear (raster/tiled_plane.h). Kernels cannot fail. They are written twice: in plain C++
-// (kernels_scalar.cpp) and once for all vector instruction sets (kernels_simd.cpp); both leave the
-// same bytes.
+// The kernel boundary: what happens to the pixels of a 64x64 tile, in 8x8 blocks of 64. Everything
+// here is integer; a set of pixels is a 64-bit mask, bit 8 y + x for pixel (x, y) of the block, and
+// planes are block-linear (raster/tiled_plane.h). Kernels cannot fail. They are written twice: in
+// plain C++ (kernels_scalar.cpp) and once for all vector instruction sets (kernels_simd.cpp); both
+// leave the same bytes.
 #pragma once
 
 #include <cstddef>
@@ -25,21 +25,45 @@ void for_each_pixel(PixelMask mask, Body body) {
   for (; mask; mask &= mask - 1) body(static_cast<std::size_t>(__builtin_ctzll(mask)));
 }
 
-/// Up to three edges of a triangle over a grid of 8x8 samples (the pixels of a block, or a corner
-/// of each block of a tile), as 32-bit sums: value + x * step_x + y * step_y at sample (x, y).
-/// Edges that hold everywhere are left out; `value` at every sample fits 32 bits.
-struct GridEdges {
+/// A set of the 8x8 blocks of a tile, bit 8 y + x for block (x, y).
+using BlockMask = std::uint64_t;
+inline constexpr BlockMask kAllBlocks = ~BlockMask{0};
+
+/// Calls body(b) for each block of the mask, lowest bit first.
+template <class Body>
+void for_each_block_of(BlockMask mask, Body body) {
+  for_each_pixel(mask, body);
+}
+
+/// The edges of a triangle that cross a tile, as 32-bit sums: value + x * step_x + y * step_y at
+/// pixel (x, y) of the tile, not negative inside. Edges that hold everywhere are left out. Sums do
+/// not overflow in the tile, because |step_x| + |step_y| < 2^25.
+struct TileEdges {
   int count = 0;
   std::int32_t value[3];
   std::int32_t step_x[3], step_y[3];
 };
 
-/// A depth plane at a block's first pixel, half a unit added (raster/depth_plane.h).
-struct BlockDepth {
+/// A depth plane at a tile's first pixel, half a unit added (raster/depth_plane.h).
+struct TileDepth {
   std::uint64_t base = 0, step_x = 0, step_y = 0;
   int fraction_bits = 8;
   bool narrow = true;
   std::uint32_t low = 0, high = 0xffffff;
+};
+
+/// Bounds of a triangle's depths in the blocks of a tile, in depth units: in block (x, y) they lie
+/// between low + x * low_step_x + y * low_step_y and the same of high, and everywhere between least
+/// and greatest.
+struct BlockDepths {
+  std::int32_t low = 0, low_step_x = 0, low_step_y = 0;
+  std::int32_t high = 0, high_step_x = 0, high_step_y = 0;
+  std::int32_t least = 0, greatest = 0xffffff;
+};
+
+/// Blocks in which all of a triangle's depths are below, or above, all that are stored.
+struct DecidedBlocks {
+  BlockMask below = 0, above = 0;
 };
 
 /// Depth and stencil state of one draw and facing, resolved against the targets that are there.
@@ -50,20 +74,54 @@ struct FragmentTests {
   std::uint8_t stencil_ref = 0;
 };
 
-/// The kernels of one instruction set.
-struct Kernels {
-  /// Samples where no edge is negative, bit 8 y + x.
-  PixelMask (*cover_grid)(const GridEdges& edges) noexcept;
+/// The blocks of a tile that a triangle's fragments are tested in.
+struct TestedBlocks {
+  /// All of them; of those the ones whose fragments all pass, or all fail, the depth test.
+  BlockMask blocks = 0, depth_passes = 0, depth_fails = 0;
+  TileDepth plane = {};
+  /// The tile's 64 blocks of 64 values each; null if the test that wants them is off.
+  std::uint32_t* depth = nullptr;
+  std::uint8_t* stencil = nullptr;
+};
 
-  /// Runs stencil test, depth test, stencil update and depth write on the covered pixels of a
-  /// block; returns those that pass all. `depth` and `stencil` point to the block's 64 values;
-  /// either may be null if its test is off.
-  PixelMask (*test_block)(const FragmentTests& tests, PixelMask covered, const BlockDepth& plane,
-                          std::uint32_t* depth, std::uint8_t* stencil) noexcept;
+/// The kernels of one instruction set. Arrays of masks have one entry a block of the tile.
+struct Kernels {
+  /// The blocks that no edge keeps out as a whole, and of those the ones inside all edges.
+  BlockMask (*cover_blocks)(const TileEdges& edges, BlockMask& filled) noexcept;
+
+  /// covered[b] = the pixels of block b inside all edges, for each b of `blocks`; returns the
+  /// blocks where there are some.
+  BlockMask (*cover_pixels)(const TileEdges& edges, BlockMask blocks, PixelMask* covered) noexcept;
+
+  /// Compares a triangle's depths, block by block, with the least and greatest of those stored: a
+  /// block is `below` if high < least[b] + below_slack, `above` if low > greatest[b] - above_slack.
+  DecidedBlocks (*compare_ranges)(const BlockDepths& depths, const std::uint32_t* least,
+                                  const std::uint32_t* greatest, std::int32_t below_slack,
+                                  std::int32_t above_slack) noexcept;
+
+  /// Runs stencil test, depth test, stencil update and depth write on covered[b] of each block;
+  /// leaves in its place the pixels that pass all and returns the blocks where there are some.
+  BlockMask (*test_blocks)(const FragmentTests& tests, const TestedBlocks& tested,
+                           PixelMask* covered) noexcept;
+
+  /// The same where nothing but the depth test decides, depth is only read, and the one stencil
+  /// operation that is not `keep` adds `delta` modulo 256: to pixels that pass the depth test, or
+  /// to those that fail it. `covered` stays.
+  void (*count_blocks)(CompareFunc func, bool on_pass, std::uint8_t delta,
+                       const TestedBlocks& tested, const PixelMask* covered) noexcept;
+
+  /// Adds deltas[b] modulo 256 to the 64 stencils of each block of a tile.
+  void (*add_to_blocks)(const std::uint8_t* deltas, std::uint8_t* stencil) noexcept;
+
+  /// The blocks of a tile that hold a stencil which passes the test.
+  BlockMask (*stencil_blocks)(const FragmentTests& tests, const std::uint8_t* stencil) noexcept;
 
   /// The least and the greatest of a block's 64 depths.
   void (*depth_range)(const std::uint32_t* depth, std::uint32_t& least,
                       std::uint32_t& greatest) noexcept;
+
+  /// Writes one colour (its four bytes as they lie in memory) to the pixels of the mask.
+  void (*fill_block)(std::uint32_t color, PixelMask mask, std::uint8_t* stored) noexcept;
 
   /// Writes 64 RGBA8 source colours over the pixels of the mask: blending, then the colour mask
   /// (raster/blend.h). Four bytes a pixel: r, g, b, a; `constant` is the blend's constant colour.

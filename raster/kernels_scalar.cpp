@@ -71,20 +71,23 @@ std::uint8_t apply(StencilOp op, std::uint8_t value, std::uint8_t ref) {
   return value;
 }
 
-void depth_values(const BlockDepth& plane, std::uint32_t (&out)[kPixelsPerBlock]) {
+/// The 64 depths of block b.
+void depth_values(const TileDepth& plane, std::size_t b, std::uint32_t (&out)[kPixelsPerBlock]) {
+  const std::uint64_t x0 = b % kBlocksPerTileRow * kBlockSize,
+                      y0 = b / kBlocksPerTileRow * kBlockSize;
+  const std::uint64_t base = plane.base + x0 * plane.step_x + y0 * plane.step_y;
   if (plane.narrow) {
-    const auto base = static_cast<std::uint32_t>(plane.base);
+    const auto low_base = static_cast<std::uint32_t>(base);
     const auto step_x = static_cast<std::uint32_t>(plane.step_x);
     const auto step_y = static_cast<std::uint32_t>(plane.step_y);
     for (std::uint32_t y = 0; y < kBlockSize; ++y)
       for (std::uint32_t x = 0; x < kBlockSize; ++x)
-        out[y * kBlockSize + x] = (base + x * step_x + y * step_y) >> plane.fraction_bits;
+        out[y * kBlockSize + x] = (low_base + x * step_x + y * step_y) >> plane.fraction_bits;
     return;
   }
   for (std::uint64_t y = 0; y < kBlockSize; ++y)
     for (std::uint64_t x = 0; x < kBlockSize; ++x) {
-      const auto value =
-          static_cast<std::int64_t>(plane.base + x * plane.step_x + y * plane.step_y);
+      const auto value = static_cast<std::int64_t>(base + x * plane.step_x + y * plane.step_y);
       out[y * kBlockSize + x] = static_cast<std::uint32_t>(
           std::clamp<std::int64_t>(value >> plane.fraction_bits, plane.low, plane.high));
     }
@@ -100,41 +103,131 @@ void update_stencil(StencilOp op, PixelMask mask, std::uint8_t ref, std::uint8_t
   });
 }
 
-PixelMask cover_grid(const GridEdges& edges) noexcept {
-  PixelMask mask = kAllPixels;
-  for (int k = 0; k < edges.count && mask; ++k) {
-    const std::int32_t value = edges.value[k], dx = edges.step_x[k], dy = edges.step_y[k];
-    mask &= gather_mask(
-        [&](int i) { return value + (i % kBlockSize) * dx + (i / kBlockSize) * dy >= 0; });
-  }
-  return mask;
+/// Of 8x8 samples those where value + x * step_x + y * step_y is negative.
+std::uint64_t negative(std::int32_t value, std::int32_t step_x, std::int32_t step_y) {
+  return gather_mask([&](int i) { return value + (i % 8) * step_x + (i / 8) * step_y < 0; });
 }
 
-PixelMask test_block(const FragmentTests& tests, PixelMask covered, const BlockDepth& plane,
-                     std::uint32_t* depth, std::uint8_t* stencil) noexcept {
-  PixelMask stencil_pass = covered;
+BlockMask cover_blocks(const TileEdges& edges, BlockMask& filled) noexcept {
+  constexpr std::int32_t kSpan = kBlockSize - 1;
+  BlockMask outside = 0, crossed = 0;
+  for (int k = 0; k < edges.count; ++k) {
+    const std::int32_t dx = edges.step_x[k], dy = edges.step_y[k];
+    const std::int32_t up = std::max(dx, 0) + std::max(dy, 0),
+                       down = std::min(dx, 0) + std::min(dy, 0);
+    outside |= negative(edges.value[k] + up * kSpan, dx * kBlockSize, dy * kBlockSize);
+    crossed |= negative(edges.value[k] + down * kSpan, dx * kBlockSize, dy * kBlockSize);
+  }
+  filled = ~crossed;
+  return ~outside;
+}
+
+BlockMask cover_pixels(const TileEdges& edges, BlockMask blocks, PixelMask* covered) noexcept {
+  BlockMask touched = 0;
+  for_each_block_of(blocks, [&](std::size_t b) {
+    const int x = static_cast<int>(b) % kBlocksPerTileRow * kBlockSize;
+    const int y = static_cast<int>(b) / kBlocksPerTileRow * kBlockSize;
+    PixelMask outside = 0;
+    for (int k = 0; k < edges.count; ++k)
+      outside |= negative(edges.value[k] + x * edges.step_x[k] + y * edges.step_y[k],
+                          edges.step_x[k], edges.step_y[k]);
+    covered[b] = ~outside;
+    if (~outside) touched |= BlockMask{1} << b;
+  });
+  return touched;
+}
+
+DecidedBlocks compare_ranges(const BlockDepths& depths, const std::uint32_t* least,
+                             const std::uint32_t* greatest, std::int32_t below_slack,
+                             std::int32_t above_slack) noexcept {
+  DecidedBlocks decided;
+  decided.below = gather_mask([&](int b) {
+    const std::int32_t high =
+        depths.high + (b % 8) * depths.high_step_x + (b / 8) * depths.high_step_y;
+    return std::clamp(high, depths.least, depths.greatest) <
+           static_cast<std::int32_t>(least[b]) + below_slack;
+  });
+  decided.above = gather_mask([&](int b) {
+    const std::int32_t low = depths.low + (b % 8) * depths.low_step_x + (b / 8) * depths.low_step_y;
+    return std::clamp(low, depths.least, depths.greatest) >
+           static_cast<std::int32_t>(greatest[b]) - above_slack;
+  });
+  return decided;
+}
+
+PixelMask test_stencil(const FragmentTests& tests, const std::uint8_t* stencil) {
   const StencilFace& face = tests.stencil;
-  if (tests.stencil_test) {
-    const std::uint8_t ref = tests.stencil_ref & face.read_mask;
-    stencil_pass &= compare_mask(
-        face.func, [&](int) { return ref; },
-        [&](int i) { return static_cast<std::uint8_t>(stencil[i] & face.read_mask); });
-    update_stencil(face.fail, covered & ~stencil_pass, tests.stencil_ref, face.write_mask, stencil);
-  }
-  PixelMask pass = stencil_pass;
-  if (tests.depth_test && stencil_pass) {
-    std::uint32_t z[kPixelsPerBlock];
-    depth_values(plane, z);
-    pass &= compare_mask(
-        tests.depth_func, [&](int i) { return z[i]; }, [&](int i) { return depth[i]; });
-    if (tests.depth_write) for_each_pixel(pass, [&](std::size_t i) { depth[i] = z[i]; });
-  }
-  if (tests.stencil_test) {
-    update_stencil(face.depth_fail, stencil_pass & ~pass, tests.stencil_ref, face.write_mask,
-                   stencil);
-    update_stencil(face.pass, pass, tests.stencil_ref, face.write_mask, stencil);
-  }
+  const std::uint8_t ref = tests.stencil_ref & face.read_mask;
+  return compare_mask(
+      face.func, [&](int) { return ref; },
+      [&](int i) { return static_cast<std::uint8_t>(stencil[i] & face.read_mask); });
+}
+
+/// Of the pixels `candidates` of block b those that pass the depth test; they are written if asked
+/// for.
+PixelMask test_depth(const FragmentTests& tests, const TestedBlocks& tested, std::size_t b,
+                     PixelMask candidates) {
+  std::uint32_t* const depth = tested.depth + b * kPixelsPerBlock;
+  std::uint32_t z[kPixelsPerBlock];
+  depth_values(tested.plane, b, z);
+  const CompareFunc func = (tested.depth_passes >> b & 1)  ? CompareFunc::always
+                           : (tested.depth_fails >> b & 1) ? CompareFunc::never
+                                                           : tests.depth_func;
+  const PixelMask passed =
+      candidates & compare_mask(
+                       func, [&](int i) { return z[i]; }, [&](int i) { return depth[i]; });
+  if (tests.depth_write) for_each_pixel(passed, [&](std::size_t i) { depth[i] = z[i]; });
+  return passed;
+}
+
+PixelMask test_block(const FragmentTests& tests, const TestedBlocks& tested, std::size_t b,
+                     PixelMask covered) {
+  const StencilFace& face = tests.stencil;
+  std::uint8_t* const stencil = tests.stencil_test ? tested.stencil + b * kPixelsPerBlock : nullptr;
+  const auto update = [&](StencilOp op, PixelMask pixels) {
+    if (stencil) update_stencil(op, pixels, tests.stencil_ref, face.write_mask, stencil);
+  };
+  const PixelMask stencil_pass = stencil ? covered & test_stencil(tests, stencil) : covered;
+  update(face.fail, covered & ~stencil_pass);
+  const PixelMask pass =
+      tests.depth_test && stencil_pass ? test_depth(tests, tested, b, stencil_pass) : stencil_pass;
+  update(face.depth_fail, stencil_pass & ~pass);
+  update(face.pass, pass);
   return pass;
+}
+
+BlockMask test_blocks(const FragmentTests& tests, const TestedBlocks& tested,
+                      PixelMask* covered) noexcept {
+  BlockMask passed = 0;
+  for_each_block_of(tested.blocks, [&](std::size_t b) {
+    covered[b] = test_block(tests, tested, b, covered[b]);
+    if (covered[b]) passed |= BlockMask{1} << b;
+  });
+  return passed;
+}
+
+void count_blocks(CompareFunc func, bool on_pass, std::uint8_t delta, const TestedBlocks& tested,
+                  const PixelMask* covered) noexcept {
+  const FragmentTests tests{.depth_test = true, .depth_func = func};
+  for_each_block_of(tested.blocks, [&](std::size_t b) {
+    const PixelMask passed = test_depth(tests, tested, b, covered[b]);
+    std::uint8_t* const stencil = tested.stencil + b * kPixelsPerBlock;
+    for_each_pixel(on_pass ? passed : covered[b] & ~passed, [&](std::size_t i) {
+      stencil[i] = static_cast<std::uint8_t>(stencil[i] + delta);
+    });
+  });
+}
+
+void add_to_blocks(const std::uint8_t* deltas, std::uint8_t* stencil) noexcept {
+  for (int i = 0; i < kPixelsPerTile; ++i)
+    stencil[i] = static_cast<std::uint8_t>(stencil[i] + deltas[i / kPixelsPerBlock]);
+}
+
+BlockMask stencil_blocks(const FragmentTests& tests, const std::uint8_t* stencil) noexcept {
+  BlockMask blocks = 0;
+  for (std::size_t b = 0; b < kBlocksPerTile; ++b)
+    if (test_stencil(tests, stencil + b * kPixelsPerBlock)) blocks |= BlockMask{1} << b;
+  return blocks;
 }
 
 void depth_range(const std::uint32_t* depth, std::uint32_t& least,
@@ -142,6 +235,10 @@ void depth_range(const std::uint32_t* depth, std::uint32_t& least,
   const auto [low, high] = std::minmax_element(depth, depth + kPixelsPerBlock);
   least = *low;
   greatest = *high;
+}
+
+void fill_block(std::uint32_t color, PixelMask mask, std::uint8_t* stored) noexcept {
+  for_each_pixel(mask, [&](std::size_t i) { std::memcpy(stored + 4 * i, &color, 4); });
 }
 
 void blend_block(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
@@ -168,7 +265,9 @@ void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count
 }  // namespace
 
 const Kernels& scalar_kernels() {
-  static constexpr Kernels kKernels{cover_grid, test_block, depth_range, blend_block, transform};
+  static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges, test_blocks,
+                                    count_blocks, add_to_blocks, stencil_blocks, depth_range,
+                                    fill_block,   blend_block,   transform};
   return kKernels;
 }
 

@@ -18,8 +18,10 @@
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 
 #include "raster/blend_block-inl.h"
-#include "raster/cover_grid-inl.h"
-#include "raster/test_block-inl.h"
+#include "raster/count_blocks-inl.h"
+#include "raster/cover-inl.h"
+#include "raster/depth_ranges-inl.h"
+#include "raster/test_blocks-inl.h"
 #include "raster/transform-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -27,7 +29,9 @@ namespace gnomon::raster {
 namespace HWY_NAMESPACE {
 
 const Kernels* kernels_of_this_target() {
-  static constexpr Kernels kKernels{cover_grid, test_block, depth_range, blend_block, transform};
+  static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges, test_blocks,
+                                    count_blocks, add_to_blocks, stencil_blocks, depth_range,
+                                    fill_block,   blend_block,   transform};
   return &kKernels;
 }
 

@@ -1,41 +1,65 @@
 #include "raster/tile.h"
 
+#include <algorithm>
+
 #include "raster/tile_blocks.h"
 #include "raster/unorm.h"
 #include "raster/write_color.h"
 
 namespace gnomon::raster {
 
-void clear_tile(const Kernels& kernels, const Clear& clear, const Targets& targets,
-                TileIndex tile) noexcept {
+namespace {
+
+void clear_depths(std::uint32_t value, std::size_t block, PixelMask mask,
+                  const TilePixels& pixels) {
+  std::uint32_t* const depth = pixels.depth() + block * kPixelsPerBlock;
+  if (mask == kAllPixels) {
+    std::fill_n(depth, kPixelsPerBlock, value);
+    pixels.ranges().set(block, value, value);
+    return;
+  }
+  for_each_pixel(mask, [&](std::size_t i) { depth[i] = value; });
+  pixels.ranges().forget(block);
+}
+
+void clear_stencils(std::uint8_t value, std::uint8_t write_mask, PixelMask mask,
+                    std::uint8_t* stencil) {
+  if (mask == kAllPixels && write_mask == 0xff) {
+    std::fill_n(stencil, kPixelsPerBlock, value);
+    return;
+  }
+  for_each_pixel(mask, [&](std::size_t i) {
+    stencil[i] = static_cast<std::uint8_t>((stencil[i] & ~write_mask) | (value & write_mask));
+  });
+}
+
+}  // namespace
+
+void clear_tile(const Clear& clear, TilePixels& pixels) noexcept {
+  const Targets& targets = pixels.targets();
   const ColorState color_state{clear.color_write, {}};
   const bool color = clear.color && any(clear.color_write);
   const bool depth = clear.depth && clear.depth_write;
   const std::uint32_t depth_value =
       depth ? float_to_depth(*clear.depth, targets.depth->format()) : 0;
-  const std::uint8_t stencil_mask = clear.stencil_write_mask;
-  for_each_block(
-      scissor_box(clear.scissor, targets.width(), targets.height()), tile,
-      [&](int, int, std::size_t offset, PixelMask mask) {
-        if (color)
-          write_constant(kernels, *targets.color, tile, offset, color_state, mask, *clear.color);
-        if (depth) {
-          std::uint32_t* const z = targets.depth->plane().tile(tile.x, tile.y) + offset;
-          for_each_pixel(mask, [&](std::size_t i) { z[i] = depth_value; });
-        }
-        if (clear.stencil) {
-          std::uint8_t* const s = targets.stencil->plane().tile(tile.x, tile.y) + offset;
-          for_each_pixel(mask, [&](std::size_t i) {
-            s[i] =
-                static_cast<std::uint8_t>((s[i] & ~stencil_mask) | (*clear.stencil & stencil_mask));
-          });
-        }
-      });
+  if (clear.stencil) pixels.add_counts();
+  for_each_block(scissor_box(clear.scissor, targets.width(), targets.height()), pixels.tile(),
+                 [&](int, int, std::size_t offset, PixelMask mask) {
+                   const std::size_t block = offset / kPixelsPerBlock;
+                   if (color)
+                     write_constant(pixels.kernels(), *targets.color, pixels.tile(), offset,
+                                    color_state, mask, *clear.color);
+                   if (depth) clear_depths(depth_value, block, mask, pixels);
+                   if (clear.stencil)
+                     clear_stencils(static_cast<std::uint8_t>(*clear.stencil),
+                                    clear.stencil_write_mask, mask, pixels.stencil() + offset);
+                 });
 }
 
-void blit_tile(const Kernels& kernels, const Blit& blit, const Targets& targets,
-               TileIndex tile) noexcept {
-  ColorBuffer& target = *targets.color;
+void blit_tile(const Blit& blit, TilePixels& pixels) noexcept {
+  const Kernels& kernels = pixels.kernels();
+  const TileIndex tile = pixels.tile();
+  ColorBuffer& target = *pixels.targets().color;
   const PixelBox image_box = scissor_box(Rect{blit.x, blit.y, blit.image.width, blit.image.height},
                                          target.width(), target.height());
   const PixelBox box =

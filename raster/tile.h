@@ -2,14 +2,11 @@
 #pragma once
 
 #include "raster/frame.h"
-#include "raster/kernels.h"
-#include "raster/tile_blocks.h"
+#include "raster/tile_pixels.h"
 
 namespace gnomon::raster {
 
-void clear_tile(const Kernels& kernels, const Clear& clear, const Targets& targets,
-                TileIndex tile) noexcept;
-void blit_tile(const Kernels& kernels, const Blit& blit, const Targets& targets,
-               TileIndex tile) noexcept;
+void clear_tile(const Clear& clear, TilePixels& pixels) noexcept;
+void blit_tile(const Blit& blit, TilePixels& pixels) noexcept;
 
 }  // namespace gnomon::raster

@@ -1,5 +1,7 @@
 #include "raster/write_color.h"
 
+#include <cstring>
+
 namespace gnomon::raster {
 
 void write_rgba8(const Kernels& kernels, ColorBuffer& target, TileIndex tile, std::size_t offset,
@@ -15,8 +17,15 @@ void write_constant(const Kernels& kernels, ColorBuffer& target, TileIndex tile,
     write_block(kernels, target, tile, offset, state, mask, [&](std::size_t) { return color; });
     return;
   }
+  const Rgba8 rounded = to_rgba8(color);
+  if (!state.blend && state.write == std::array<bool, 4>{true, true, true, true}) {
+    std::uint32_t bytes = 0;
+    std::memcpy(&bytes, rounded.data(), sizeof bytes);
+    kernels.fill_block(bytes, mask, (target.rgba8().tile(tile.x, tile.y) + offset)->data());
+    return;
+  }
   Rgba8Block source;
-  source.fill(to_rgba8(color));
+  source.fill(rounded);
   write_rgba8(kernels, target, tile, offset, state, mask, source);
 }
 

@@ -1,10 +1,10 @@
-// Vector kernel: stencil test, depth test, stencil update and depth write of a block.
+// Vector kernel: stencil test, depth test, stencil update and depth write, block by block.
 // Read once for each instruction set, so its guard goes to and fro with Highway's.
-#if defined(GNOMON_RASTER_TEST_BLOCK_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef GNOMON_RASTER_TEST_BLOCK_INL_H
-#undef GNOMON_RASTER_TEST_BLOCK_INL_H
+#if defined(GNOMON_RASTER_TEST_BLOCKS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef GNOMON_RASTER_TEST_BLOCKS_INL_H
+#undef GNOMON_RASTER_TEST_BLOCKS_INL_H
 #else
-#define GNOMON_RASTER_TEST_BLOCK_INL_H
+#define GNOMON_RASTER_TEST_BLOCKS_INL_H
 #endif
 
 #include <hwy/highway.h>
@@ -79,13 +79,14 @@ HWY_INLINE PixelMask test_stencil(const FragmentTests& tests, const std::uint8_t
   return c.opposite ? ~mask : mask;
 }
 
-/// The 64 depths of a plane that is not narrow, clamped to [low, high], in 64-bit lanes.
-HWY_INLINE void wide_depths(const BlockDepth& plane, std::uint32_t* out) {
+/// The 64 depths of a block, of a plane that is not narrow, clamped to [low, high], in 64-bit
+/// lanes.
+HWY_INLINE void wide_depths(const TileDepth& plane, std::uint64_t base, std::uint32_t* out) {
   const hn::CappedTag<std::uint64_t, kWidth> d;
   const hn::RebindToSigned<decltype(d)> signed_d;
   const hn::Rebind<std::uint32_t, decltype(d)> narrow_d;
   std::uint64_t row[kWidth];
-  for (std::size_t x = 0; x < kWidth; ++x) row[x] = plane.base + x * plane.step_x;
+  for (std::size_t x = 0; x < kWidth; ++x) row[x] = base + x * plane.step_x;
   const auto low = hn::Set(signed_d, static_cast<std::int64_t>(plane.low));
   const auto high = hn::Set(signed_d, static_cast<std::int64_t>(plane.high));
   for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
@@ -98,50 +99,45 @@ HWY_INLINE void wide_depths(const BlockDepth& plane, std::uint32_t* out) {
   }
 }
 
-/// The 64 depths of a plane, vector by vector.
+/// The 64 depths of a plane in block b of the tile, vector by vector.
 class Depths {
  public:
-  explicit HWY_INLINE Depths(const BlockDepth& plane) : plane_(plane) {
+  HWY_INLINE Depths(const TileDepth& plane, std::size_t b) : plane_(plane) {
+    const std::uint64_t base = plane.base + (b % 8) * 8 * plane.step_x + (b / 8) * 8 * plane.step_y;
+    base_ = static_cast<std::uint32_t>(base);
     if (plane.narrow)
       steps_ = lane_steps(DU32(), static_cast<std::uint32_t>(plane.step_x),
                           static_cast<std::uint32_t>(plane.step_y));
     else
-      wide_depths(plane, wide_);
+      wide_depths(plane, base, wide_);
   }
   HWY_INLINE VI32 at(std::size_t i) const {
     const DU32 d;
     if (!plane_.narrow) return hn::BitCast(DI32(), hn::LoadU(d, wide_ + i));
-    const std::uint32_t base =
-        value_at(static_cast<std::uint32_t>(plane_.base), static_cast<std::uint32_t>(plane_.step_x),
-                 static_cast<std::uint32_t>(plane_.step_y), i);
+    const std::uint32_t base = value_at(base_, static_cast<std::uint32_t>(plane_.step_x),
+                                        static_cast<std::uint32_t>(plane_.step_y), i);
     const VU32 value = hn::Add(hn::Set(d, base), steps_);
     return hn::BitCast(
         DI32(), plane_.fraction_bits == 8 ? hn::ShiftRight<8>(value) : hn::ShiftRight<16>(value));
   }
 
  private:
-  const BlockDepth& plane_;
+  const TileDepth& plane_;
+  std::uint32_t base_ = 0;
   VU32 steps_;
   std::uint32_t wide_[kPixels];
 };
 
-/// Of the pixels `candidates` those whose depth stands in the relation (or, with `opposite`, does
-/// not); they are written if asked for. Depths have at most 24 bits, so signed comparison is right.
+/// The pixels whose depth stands in the relation to the stored one. Depths have at most 24 bits, so
+/// signed comparison is right.
 template <Relation kRelation>
-HWY_INLINE PixelMask related_depths(const Depths& depths, bool opposite, bool write,
-                                    PixelMask candidates, std::uint32_t* depth) {
+HWY_INLINE PixelMask related_depths(const Depths& depths, const std::uint32_t* depth) {
   const DI32 d;
-  auto* const stored = reinterpret_cast<std::int32_t*>(depth);
-  PixelMask passed = 0;
-  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
-    const VI32 z = depths.at(i);
-    auto mask = related<kRelation>(z, hn::LoadU(d, stored + i));
-    if (opposite) mask = hn::Not(mask);
-    const PixelMask here = pixels_of(d, mask, i) & candidates;
-    if (write && here) hn::BlendedStore(z, lanes_of(d, here, i), d, stored + i);
-    passed |= here;
-  }
-  return passed;
+  const auto* const stored = reinterpret_cast<const std::int32_t*>(depth);
+  PixelMask mask = 0;
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d))
+    mask |= pixels_of(d, related<kRelation>(depths.at(i), hn::LoadU(d, stored + i)), i);
+  return mask;
 }
 
 HWY_INLINE void write_depths(const Depths& depths, PixelMask pixels, std::uint32_t* depth) {
@@ -151,27 +147,39 @@ HWY_INLINE void write_depths(const Depths& depths, PixelMask pixels, std::uint32
     hn::BlendedStore(depths.at(i), lanes_of(d, pixels, i), d, stored + i);
 }
 
-HWY_INLINE PixelMask test_depth(const FragmentTests& tests, PixelMask candidates,
-                                const BlockDepth& plane, std::uint32_t* depth) {
-  if (tests.depth_func == CompareFunc::never) return 0;
-  if (tests.depth_func == CompareFunc::always && !tests.depth_write) return candidates;
-  const Depths depths(plane);
-  if (tests.depth_func == CompareFunc::always) {
-    write_depths(depths, candidates, depth);
-    return candidates;
-  }
-  const Comparison c = comparison(tests.depth_func);
+HWY_INLINE PixelMask compare_depths(CompareFunc func, const Depths& depths,
+                                    const std::uint32_t* depth) {
+  if (func == CompareFunc::never) return 0;
+  if (func == CompareFunc::always) return kAllPixels;
+  const Comparison c = comparison(func);
+  PixelMask mask = 0;
   switch (c.relation) {
     case Relation::less:
-      return related_depths<Relation::less>(depths, c.opposite, tests.depth_write, candidates,
-                                            depth);
+      mask = related_depths<Relation::less>(depths, depth);
+      break;
     case Relation::equal:
-      return related_depths<Relation::equal>(depths, c.opposite, tests.depth_write, candidates,
-                                             depth);
-    default:
-      return related_depths<Relation::greater>(depths, c.opposite, tests.depth_write, candidates,
-                                               depth);
+      mask = related_depths<Relation::equal>(depths, depth);
+      break;
+    case Relation::greater:
+      mask = related_depths<Relation::greater>(depths, depth);
+      break;
   }
+  return c.opposite ? ~mask : mask;
+}
+
+/// Of the pixels `candidates` of block b those that pass the depth test; they are written if asked
+/// for.
+HWY_INLINE PixelMask test_depth(const FragmentTests& tests, const TestedBlocks& tested,
+                                std::size_t b, PixelMask candidates) {
+  const bool passes = (tested.depth_passes >> b & 1) != 0;
+  if ((tested.depth_fails >> b & 1) != 0) return 0;
+  if (passes && !tests.depth_write) return candidates;
+  std::uint32_t* const depth = tested.depth + b * kPixels;
+  const Depths depths(tested.plane, b);
+  const PixelMask passed =
+      passes ? candidates : candidates & compare_depths(tests.depth_func, depths, depth);
+  if (tests.depth_write && passed) write_depths(depths, passed, depth);
+  return passed;
 }
 
 HWY_INLINE VU8 apply(StencilOp op, VU8 value, VU8 ref) {
@@ -211,34 +219,32 @@ HWY_INLINE void update_stencil(StencilOp op, PixelMask pixels, const FragmentTes
   }
 }
 
-void depth_range(const std::uint32_t* depth, std::uint32_t& least,
-                 std::uint32_t& greatest) noexcept {
-  const DI32 d;
-  const auto* const stored = reinterpret_cast<const std::int32_t*>(depth);
-  VI32 low = hn::LoadU(d, stored), high = low;
-  for (std::size_t i = hn::Lanes(d); i < kPixels; i += hn::Lanes(d)) {
-    const VI32 z = hn::LoadU(d, stored + i);
-    low = hn::Min(low, z);
-    high = hn::Max(high, z);
-  }
-  least = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(d, low)));
-  greatest = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(d, high)));
-}
-
-PixelMask test_block(const FragmentTests& tests, PixelMask covered, const BlockDepth& plane,
-                     std::uint32_t* depth, std::uint8_t* stencil) noexcept {
+HWY_INLINE PixelMask test_block(const FragmentTests& tests, const TestedBlocks& tested,
+                                std::size_t b, PixelMask covered) {
+  std::uint8_t* const stencil = tests.stencil_test ? tested.stencil + b * kPixels : nullptr;
   PixelMask stencil_pass = covered;
-  if (tests.stencil_test) {
+  if (stencil) {
     stencil_pass &= test_stencil(tests, stencil);
     update_stencil(tests.stencil.fail, covered & ~stencil_pass, tests, stencil);
   }
   PixelMask pass = stencil_pass;
-  if (tests.depth_test && stencil_pass) pass = test_depth(tests, stencil_pass, plane, depth);
-  if (tests.stencil_test) {
+  if (tests.depth_test && stencil_pass) pass = test_depth(tests, tested, b, stencil_pass);
+  if (stencil) {
     update_stencil(tests.stencil.depth_fail, stencil_pass & ~pass, tests, stencil);
     update_stencil(tests.stencil.pass, pass, tests, stencil);
   }
   return pass;
+}
+
+BlockMask test_blocks(const FragmentTests& tests, const TestedBlocks& tested,
+                      PixelMask* covered) noexcept {
+  BlockMask passed = 0;
+  for (BlockMask rest = tested.blocks; rest; rest &= rest - 1) {
+    const auto b = static_cast<std::size_t>(__builtin_ctzll(rest));
+    covered[b] = test_block(tests, tested, b, covered[b]);
+    if (covered[b]) passed |= BlockMask{1} << b;
+  }
+  return passed;
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,0 +1,111 @@
+// Vector kernels: which blocks of a tile, and which pixels of a block, lie inside a triangle's
+// edges. Read once for each instruction set, so its guard goes to and fro with Highway's.
+#if defined(GNOMON_RASTER_COVER_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef GNOMON_RASTER_COVER_INL_H
+#undef GNOMON_RASTER_COVER_INL_H
+#else
+#define GNOMON_RASTER_COVER_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "raster/kernels.h"
+#include "raster/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace gnomon::raster {
+namespace HWY_NAMESPACE {
+
+/// value + x * step_x + y * step_y over an 8x8 grid of samples, vector by vector.
+class GridSums {
+ public:
+  HWY_INLINE GridSums(std::int32_t value, std::int32_t step_x, std::int32_t step_y)
+      : value_(static_cast<std::uint32_t>(value)),
+        step_x_(static_cast<std::uint32_t>(step_x)),
+        step_y_(static_cast<std::uint32_t>(step_y)),
+        lanes_(lane_steps(DU32(), step_x_, step_y_)) {}
+  HWY_INLINE VU32 at(std::size_t i) const {
+    return hn::Add(hn::Set(DU32(), value_at(value_, step_x_, step_y_, i)), lanes_);
+  }
+
+ private:
+  std::uint32_t value_, step_x_, step_y_;
+  VU32 lanes_;
+};
+
+HWY_INLINE PixelMask negative(VU32 sums, std::size_t i) {
+  const DI32 d;
+  return pixels_of(d, hn::Lt(hn::BitCast(d, sums), hn::Zero(d)), i);
+}
+
+BlockMask cover_blocks(const TileEdges& edges, BlockMask& filled) noexcept {
+  constexpr std::int32_t kSpan = kWidth - 1;
+  BlockMask outside = 0, crossed = 0;
+  for (int k = 0; k < edges.count; ++k) {
+    const std::int32_t dx = edges.step_x[k], dy = edges.step_y[k];
+    const std::int32_t up = (dx > 0 ? dx : 0) + (dy > 0 ? dy : 0),
+                       down = (dx < 0 ? dx : 0) + (dy < 0 ? dy : 0);
+    const GridSums greatest(edges.value[k] + up * kSpan, dx * 8, dy * 8);
+    const VU32 spread = hn::Set(DU32(), static_cast<std::uint32_t>((down - up) * kSpan));
+    for (std::size_t i = 0; i < kPixels; i += hn::Lanes(DU32())) {
+      const VU32 sums = greatest.at(i);
+      outside |= negative(sums, i);
+      crossed |= negative(hn::Add(sums, spread), i);
+    }
+  }
+  filled = ~crossed;
+  return ~outside;
+}
+
+template <int kCount>
+HWY_INLINE BlockMask cover_pixels_of(const TileEdges& edges, BlockMask blocks, PixelMask* covered) {
+  const DU32 d;
+  VU32 lanes[kCount];
+  for (int k = 0; k < kCount; ++k)
+    lanes[k] = lane_steps(d, static_cast<std::uint32_t>(edges.step_x[k]),
+                          static_cast<std::uint32_t>(edges.step_y[k]));
+  BlockMask touched = 0;
+  for (BlockMask rest = blocks; rest; rest &= rest - 1) {
+    const auto b = static_cast<std::uint32_t>(__builtin_ctzll(rest));
+    std::uint32_t value[kCount];
+    for (int k = 0; k < kCount; ++k)
+      value[k] = static_cast<std::uint32_t>(edges.value[k]) +
+                 (b % 8) * 8 * static_cast<std::uint32_t>(edges.step_x[k]) +
+                 (b / 8) * 8 * static_cast<std::uint32_t>(edges.step_y[k]);
+    PixelMask outside = 0;
+    for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+      // A pixel is out if any edge's sign bit is set there.
+      VU32 any = hn::Zero(d);
+      for (int k = 0; k < kCount; ++k)
+        any = hn::Or(
+            any, hn::Add(hn::Set(d, value_at(value[k], static_cast<std::uint32_t>(edges.step_x[k]),
+                                             static_cast<std::uint32_t>(edges.step_y[k]), i)),
+                         lanes[k]));
+      outside |= negative(any, i);
+    }
+    covered[b] = ~outside;
+    if (~outside) touched |= BlockMask{1} << b;
+  }
+  return touched;
+}
+
+BlockMask cover_pixels(const TileEdges& edges, BlockMask blocks, PixelMask* covered) noexcept {
+  switch (edges.count) {
+    case 1:
+      return cover_pixels_of<1>(edges, blocks, covered);
+    case 2:
+      return cover_pixels_of<2>(edges, blocks, covered);
+    case 3:
+      return cover_pixels_of<3>(edges, blocks, covered);
+    default:
+      for (BlockMask rest = blocks; rest; rest &= rest - 1)
+        covered[__builtin_ctzll(rest)] = kAllPixels;
+      return blocks;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace gnomon::raster
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target guard
