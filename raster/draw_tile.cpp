@@ -243,7 +243,11 @@ FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets) {
     setup.uses_stencil =
         setup.uses_stencil || !stencil_test_passes_all(face->tests) || (changes && !face->counts);
   }
-  if (setup.color && is_constant(draw)) setup.constant = shade(draw.shading, Fragment{});
+  if (!setup.color) return setup;
+  if (is_constant(draw))
+    setup.constant = shade(draw.shading, Fragment{});
+  else
+    setup.shading = make_draw_shading(draw);
   return setup;
 }
 
@@ -388,22 +392,31 @@ void DrawInTile::draw(const SetupTriangle& triangle,
 void DrawInTile::color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
                               BlockMask blocks, const PixelMask* passed) const {
   const Draw& draw = *setup_.draw;
-  ColorBuffer& target = *pixels_.targets().color;
-  const ColorState& state = draw.state.color;
+  const BlockWriter writer(kernels_, *pixels_.targets().color, pixels_.tile(), draw.state.color);
+  if (fragments_.constant) {
+    for_each_block_of(blocks,
+                      [&](std::size_t b) { writer.write(b, passed[b], *fragments_.constant); });
+    return;
+  }
+  const bool in_vectors = fragments_.shading && kernels_.shade_block;
+  BlockShading shading;
+  if (in_vectors && blocks)
+    shading = make_triangle_shading(draw, *fragments_.shading, triangle, pieces);
   for_each_block_of(blocks, [&](std::size_t b) {
-    const std::size_t offset = b * kPixelsPerBlock;
-    if (fragments_.constant) {
-      write_constant(kernels_, target, pixels_.tile(), offset, state, passed[b],
-                     *fragments_.constant);
-      return;
-    }
     const int x = x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize;
     const int y = y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize;
-    write_block(kernels_, target, pixels_.tile(), offset, state, passed[b], [&](std::size_t i) {
-      const int px = x + static_cast<int>(i) % kBlockSize,
-                py = y + static_cast<int>(i) / kBlockSize;
-      return shade(draw.shading, interpolate(draw, triangle, pieces, px, py));
-    });
+    ColorPlanes colors;
+    if (in_vectors) {
+      set_block(triangle, x, y, shading);
+      kernels_.shade_block(shading, passed[b], colors.data());
+    } else {
+      for_each_pixel(passed[b], [&](std::size_t i) {
+        const int px = x + static_cast<int>(i) % kBlockSize,
+                  py = y + static_cast<int>(i) / kBlockSize;
+        set_color(colors, i, shade(draw.shading, interpolate(draw, triangle, pieces, px, py)));
+      });
+    }
+    writer.write(b, passed[b], colors);
   });
 }
 

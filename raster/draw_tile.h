@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "raster/block_shading.h"
 #include "raster/frame.h"
 #include "raster/geometry.h"
 #include "raster/kernels.h"
@@ -29,6 +30,8 @@ struct FragmentSetup {
   bool color = false;
   /// The colour of all fragments, if they have one.
   std::optional<glm::vec4> constant;
+  /// How the vector kernel shades it, if it can.
+  std::optional<DrawShading> shading;
   /// The stencil is read, or written otherwise than by counts.
   bool uses_stencil = false;
   /// No fragment changes the stencil.

@@ -84,6 +84,56 @@ struct TestedBlocks {
   std::uint8_t* stencil = nullptr;
 };
 
+/// A triangle's weights over a block: edges at the block's first pixel and their steps a pixel, all
+/// of them whole numbers below 2^53 (raster/interpolate.h).
+struct BlockWeights {
+  double edge[3], step_x[3], step_y[3];
+  double area;
+  double inverse_w[3];
+  /// Weights of the mesh triangle's vertices are rows [vertex of the piece][vertex of the mesh];
+  /// unless it is a piece, they are the three weights in this order.
+  bool is_piece;
+  double piece[3][3];
+  int order[3];
+};
+
+/// A light as the vector kernel wants it; names and units are those of raster::Light.
+struct BlockLight {
+  float position[4];
+  float ambient[3], diffuse[3], specular[3];
+  float attenuation[3];
+  float spot_direction[3];
+  float spot_cos_cutoff;
+  int spot_exponent;
+};
+
+/// Lighting without textures and lookups (raster/shading.h), the same for all blocks of a draw.
+struct BlockLit {
+  float material_ambient[3], material_diffuse[3], material_specular[3], material_emission[3];
+  float material_alpha;
+  int shininess;
+  bool ambient, emission, diffuse, specular;
+  /// The specular sum can change a bit of the result.
+  bool specular_matters;
+  /// Some light or the highlight depends on the fragment's place.
+  bool world_matters;
+  float scene_ambient[3], eye_world[3];
+  float world_from_model[4][4], world_from_model_normal[3][3];
+  const BlockLight* lights;
+  int light_count;
+};
+
+/// A triangle's colours over a block: lit, or `flat_color` times the mesh's colours.
+struct BlockShading {
+  BlockWeights weights;
+  const BlockLit* lit;
+  float flat_color[4];
+  /// Of the mesh triangle's three vertices.
+  float normals[3][3], positions[3][4], colors[3][4];
+  bool has_colors;
+  bool reverse_normal;
+};
+
 /// The kernels of one instruction set. Arrays of masks have one entry a block of the tile.
 struct Kernels {
   /// The blocks that no edge keeps out as a whole, and of those the ones inside all edges.
@@ -127,6 +177,13 @@ struct Kernels {
   /// (raster/blend.h). Four bytes a pixel: r, g, b, a; `constant` is the blend's constant colour.
   void (*blend_block)(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
                       const std::uint8_t* source, std::uint8_t* stored) noexcept;
+
+  /// Colours of the pixels of the mask, four planes of 64; other pixels' are not defined. Null in
+  /// plain C++: there shade() and interpolate() (raster/shading.h) do it, pixel by pixel.
+  void (*shade_block)(const BlockShading& shading, PixelMask mask, float* colors) noexcept;
+
+  /// Rounds 64 colours in four planes to RGBA8 (raster/unorm.h).
+  void (*round_colors)(const float* colors, std::uint8_t* rounded) noexcept;
 
   /// Clip-space positions of `count` vertices: ((m0 x + m1 y) + m2 z) + m3 w in float32, each
   /// operation rounded once.

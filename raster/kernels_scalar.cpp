@@ -7,6 +7,7 @@
 #include "raster/blend.h"
 #include "raster/check.h"
 #include "raster/tiled_plane.h"
+#include "raster/unorm.h"
 
 namespace gnomon::raster {
 
@@ -253,6 +254,12 @@ void blend_block(const ColorState& state, const std::uint8_t (&constant)[4], Pix
   });
 }
 
+void round_colors(const float* colors, std::uint8_t* rounded) noexcept {
+  for (std::size_t i = 0; i < kPixelsPerBlock; ++i)
+    for (std::size_t c = 0; c < 4; ++c)
+      rounded[4 * i + c] = float_to_unorm8(colors[c * kPixelsPerBlock + i]);
+}
+
 void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count,
                glm::vec4* out) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
@@ -267,7 +274,8 @@ void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count
 const Kernels& scalar_kernels() {
   static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges, test_blocks,
                                     count_blocks, add_to_blocks, stencil_blocks, depth_range,
-                                    fill_block,   blend_block,   transform};
+                                    fill_block,   blend_block,   nullptr,        round_colors,
+                                    transform};
   return kKernels;
 }
 

@@ -21,6 +21,7 @@
 #include "raster/count_blocks-inl.h"
 #include "raster/cover-inl.h"
 #include "raster/depth_ranges-inl.h"
+#include "raster/shade_block-inl.h"
 #include "raster/test_blocks-inl.h"
 #include "raster/transform-inl.h"
 
@@ -31,7 +32,8 @@ namespace HWY_NAMESPACE {
 const Kernels* kernels_of_this_target() {
   static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges, test_blocks,
                                     count_blocks, add_to_blocks, stencil_blocks, depth_range,
-                                    fill_block,   blend_block,   transform};
+                                    fill_block,   blend_block,   shade_block,    round_colors,
+                                    transform};
   return &kKernels;
 }
 

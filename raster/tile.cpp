@@ -1,6 +1,7 @@
 #include "raster/tile.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "raster/tile_blocks.h"
 #include "raster/unorm.h"
@@ -43,12 +44,12 @@ void clear_tile(const Clear& clear, TilePixels& pixels) noexcept {
   const std::uint32_t depth_value =
       depth ? float_to_depth(*clear.depth, targets.depth->format()) : 0;
   if (clear.stencil) pixels.add_counts();
+  std::optional<BlockWriter> writer;
+  if (color) writer.emplace(pixels.kernels(), *targets.color, pixels.tile(), color_state);
   for_each_block(scissor_box(clear.scissor, targets.width(), targets.height()), pixels.tile(),
                  [&](int, int, std::size_t offset, PixelMask mask) {
                    const std::size_t block = offset / kPixelsPerBlock;
-                   if (color)
-                     write_constant(pixels.kernels(), *targets.color, pixels.tile(), offset,
-                                    color_state, mask, *clear.color);
+                   if (color) writer->write(block, mask, *clear.color);
                    if (depth) clear_depths(depth_value, block, mask, pixels);
                    if (clear.stencil)
                      clear_stencils(static_cast<std::uint8_t>(*clear.stencil),
@@ -57,7 +58,6 @@ void clear_tile(const Clear& clear, TilePixels& pixels) noexcept {
 }
 
 void blit_tile(const Blit& blit, TilePixels& pixels) noexcept {
-  const Kernels& kernels = pixels.kernels();
   const TileIndex tile = pixels.tile();
   ColorBuffer& target = *pixels.targets().color;
   const PixelBox image_box = scissor_box(Rect{blit.x, blit.y, blit.image.width, blit.image.height},
@@ -65,6 +65,7 @@ void blit_tile(const Blit& blit, TilePixels& pixels) noexcept {
   const PixelBox box =
       intersect(image_box, scissor_box(blit.scissor, target.width(), target.height()));
   const ColorState state{blit.color_write, {}};
+  const BlockWriter writer(pixels.kernels(), target, tile, state);
   for_each_block(box, tile, [&](int x, int y, std::size_t offset, PixelMask mask) {
     const auto pixel = [&](std::size_t i) -> Rgba8 {
       const int px = x + static_cast<int>(i) % kBlockSize,
@@ -72,14 +73,16 @@ void blit_tile(const Blit& blit, TilePixels& pixels) noexcept {
       const std::uint8_t* c = blit.image.pixel(px - blit.x, py - blit.y);
       return {c[0], c[1], c[2], blit.image.channels == 4 ? c[3] : std::uint8_t{0}};
     };
-    if (target.format() == ColorFormat::rgba32f) {
-      write_block(kernels, target, tile, offset, state, mask,
-                  [&](std::size_t i) { return to_floats(pixel(i)); });
+    const std::size_t block = offset / kPixelsPerBlock;
+    if (writer.is_rgba8()) {
+      Rgba8Block source;
+      for_each_pixel(mask, [&](std::size_t i) { source[i] = pixel(i); });
+      writer.write(block, mask, source);
       return;
     }
-    Rgba8Block source;
-    for_each_pixel(mask, [&](std::size_t i) { source[i] = pixel(i); });
-    write_rgba8(kernels, target, tile, offset, state, mask, source);
+    ColorPlanes source;
+    for_each_pixel(mask, [&](std::size_t i) { set_color(source, i, to_floats(pixel(i))); });
+    writer.write(block, mask, source);
   });
 }
 

@@ -3,42 +3,49 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include <glm/vec4.hpp>
 
-#include "raster/blend.h"
 #include "raster/buffers.h"
 #include "raster/kernels.h"
+#include "raster/state.h"
 #include "raster/tile_blocks.h"
-#include "raster/unorm.h"
 
 namespace gnomon::raster {
 
-/// Colours for the pixels of a block on their way to an RGBA8 target.
+/// Colours of a block's 64 pixels in four planes: r, g, b, a. Only those of a mask are set.
+using ColorPlanes = std::array<float, 4 * kPixelsPerBlock>;
+
+inline void set_color(ColorPlanes& colors, std::size_t i, const glm::vec4& color) {
+  for (std::size_t c = 0; c < 4; ++c) colors[c * kPixelsPerBlock + i] = color[static_cast<int>(c)];
+}
+
+/// The same as RGBA8.
 using Rgba8Block = std::array<Rgba8, kPixelsPerBlock>;
 
-/// Blends the mask's pixels of `source` into an RGBA8 target's block.
-void write_rgba8(const Kernels& kernels, ColorBuffer& target, TileIndex tile, std::size_t offset,
-                 const ColorState& state, PixelMask mask, const Rgba8Block& source);
+/// Writes to the blocks of one tile of a colour buffer, under one colour state.
+class BlockWriter {
+ public:
+  BlockWriter(const Kernels& kernels, ColorBuffer& target, TileIndex tile, const ColorState& state);
 
-/// One colour for all pixels of the mask.
-void write_constant(const Kernels& kernels, ColorBuffer& target, TileIndex tile, std::size_t offset,
-                    const ColorState& state, PixelMask mask, const glm::vec4& color);
+  /// Writes the mask's pixels of block b.
+  void write(std::size_t b, PixelMask mask, const ColorPlanes& colors) const;
+  void write(std::size_t b, PixelMask mask, const glm::vec4& color) const;
+  /// Precondition: an RGBA8 target.
+  void write(std::size_t b, PixelMask mask, const Rgba8Block& colors) const;
 
-/// Writes the colours of the mask's pixels: of_pixel(i) in floats.
-template <class OfPixel>
-void write_block(const Kernels& kernels, ColorBuffer& target, TileIndex tile, std::size_t offset,
-                 const ColorState& state, PixelMask mask, OfPixel of_pixel) {
-  if (target.format() == ColorFormat::rgba32f) {
-    glm::vec4* const stored = target.rgba32f().tile(tile.x, tile.y) + offset;
-    for_each_pixel(
-        mask, [&](std::size_t i) { stored[i] = blend_rgba32f(state, of_pixel(i), stored[i]); });
-    return;
-  }
-  Rgba8Block source;
-  for_each_pixel(mask, [&](std::size_t i) { source[i] = to_rgba8(of_pixel(i)); });
-  write_rgba8(kernels, target, tile, offset, state, mask, source);
-}
+  bool is_rgba8() const { return rgba8_ != nullptr; }
+
+ private:
+  const Kernels& kernels_;
+  const ColorState& state_;
+  /// No blending and no channel left out.
+  const bool plain_;
+  Rgba8 constant_{};
+  Rgba8* rgba8_ = nullptr;
+  glm::vec4* rgba32f_ = nullptr;
+};
 
 inline bool any(const std::array<bool, 4>& write) {
   return write[0] || write[1] || write[2] || write[3];

@@ -1,0 +1,136 @@
+#include "raster/block_shading.h"
+
+#include <cmath>
+
+namespace gnomon::raster {
+
+namespace {
+
+template <class Vector, std::size_t kCount>
+void copy(const Vector& from, float (&to)[kCount]) {
+  for (std::size_t i = 0; i < kCount; ++i) to[i] = from[static_cast<int>(i)];
+}
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// The light's specular sum is finite whatever the fragment is: its strength is at most
+/// 1 / attenuation.x, and a power of a cosine, which rounding may leave a few 2^-24 above 1, stays
+/// small up to this exponent.
+bool has_finite_specular(const Light& light, int shininess) {
+  constexpr int kLargestExponent = 1 << 20;
+  const glm::vec3& attenuation = light.attenuation;
+  return finite(light.specular) && shininess <= kLargestExponent &&
+         light.spot_exponent <= kLargestExponent && attenuation.x >= 1e-6f &&
+         attenuation.y >= 0.0f && attenuation.z >= 0.0f;
+}
+
+/// Adding zero times a finite sum changes no bit of a colour.
+bool specular_matters(const Lit& lit) {
+  if (!lit.specular) return false;
+  if (lit.material.specular != glm::vec3(0.0f)) return true;
+  for (const Light& light : lit.lights)
+    if (!has_finite_specular(light, lit.material.shininess)) return true;
+  return false;
+}
+
+BlockLight make_light(const Light& light) {
+  BlockLight out{};
+  copy(light.position, out.position);
+  copy(light.ambient, out.ambient);
+  copy(light.diffuse, out.diffuse);
+  copy(light.specular, out.specular);
+  copy(light.attenuation, out.attenuation);
+  copy(light.spot_direction, out.spot_direction);
+  out.spot_cos_cutoff = light.spot_cos_cutoff;
+  out.spot_exponent = light.spot_exponent;
+  return out;
+}
+
+BlockLit make_lit(const Lit& lit) {
+  BlockLit out{};
+  copy(lit.material.ambient, out.material_ambient);
+  copy(lit.material.diffuse, out.material_diffuse);
+  copy(lit.material.specular, out.material_specular);
+  copy(lit.material.emission, out.material_emission);
+  out.material_alpha = lit.material.alpha;
+  out.shininess = lit.material.shininess;
+  out.ambient = lit.ambient;
+  out.emission = lit.emission;
+  out.diffuse = lit.diffuse;
+  out.specular = lit.specular;
+  out.specular_matters = specular_matters(lit);
+  out.world_matters = out.specular_matters;
+  for (const Light& light : lit.lights)
+    out.world_matters = out.world_matters || light.position.w != 0.0f;
+  copy(lit.scene_ambient, out.scene_ambient);
+  copy(lit.eye_world, out.eye_world);
+  for (int c = 0; c < 4; ++c)
+    copy(lit.world_from_model[c], out.world_from_model[static_cast<std::size_t>(c)]);
+  for (int c = 0; c < 3; ++c)
+    copy(lit.world_from_model_normal[c], out.world_from_model_normal[static_cast<std::size_t>(c)]);
+  return out;
+}
+
+}  // namespace
+
+std::optional<DrawShading> make_draw_shading(const Draw& draw) {
+  if (const Flat* flat = std::get_if<Flat>(&draw.shading)) {
+    if (flat->texture || flat->depth_lookup) return std::nullopt;
+    return DrawShading{};
+  }
+  const Lit& lit = std::get<Lit>(draw.shading);
+  if (lit.texture) return std::nullopt;
+  DrawShading shading;
+  for (const Light& light : lit.lights) {
+    if (light.shadow_map) return std::nullopt;
+    shading.lights.push_back(make_light(light));
+  }
+  shading.lit = make_lit(lit);
+  shading.lit->lights = shading.lights.data();
+  shading.lit->light_count = static_cast<int>(shading.lights.size());
+  shading.two_sided = lit.two_sided;
+  return shading;
+}
+
+BlockShading make_triangle_shading(const Draw& draw, const DrawShading& shading,
+                                   const SetupTriangle& triangle,
+                                   std::span<const PieceWeights> pieces) {
+  BlockShading out;
+  BlockWeights& weights = out.weights;
+  weights.area = static_cast<double>(triangle.area);
+  weights.is_piece = triangle.piece != SetupTriangle::kWhole;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const Edge edge = triangle.edge(k);
+    weights.step_x[i] = 256.0 * edge.a;
+    weights.step_y[i] = 256.0 * edge.b;
+    weights.inverse_w[i] = triangle.inverse_w[i];
+    weights.order[i] = triangle.swapped && k > 0 ? 3 - k : k;
+    if (weights.is_piece)
+      for (int v = 0; v < 3; ++v)
+        weights.piece[i][static_cast<std::size_t>(v)] = pieces[triangle.piece][i][v];
+  }
+  out.lit = shading.lit ? &*shading.lit : nullptr;
+  if (const Flat* flat = std::get_if<Flat>(&draw.shading)) copy(flat->color, out.flat_color);
+  const MeshView& mesh = draw.mesh;
+  out.has_colors = !mesh.colors.empty();
+  out.reverse_normal = shading.two_sided && !triangle.front_facing;
+  for (std::size_t v = 0; v < 3; ++v) {
+    const std::uint32_t index = mesh.indices[triangle.first_index + v];
+    if (out.has_colors) copy(mesh.colors[index], out.colors[v]);
+    if (!out.lit) continue;
+    copy(mesh.normals[index], out.normals[v]);
+    copy(mesh.positions[index], out.positions[v]);
+  }
+  return out;
+}
+
+void set_block(const SetupTriangle& triangle, int x, int y, BlockShading& shading) {
+  for (int k = 0; k < 3; ++k)
+    shading.weights.edge[k] = static_cast<double>(
+        triangle.edge(k).at(x * std::int64_t{256} + 128, y * std::int64_t{256} + 128));
+}
+
+}  // namespace gnomon::raster

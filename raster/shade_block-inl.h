@@ -1,0 +1,234 @@
+// Vector kernels: colours of a block's pixels. The same operations in the same order as
+// raster/interpolate.cpp and raster/shading.cpp, products and sums apart, each rounded once.
+// Read once for each instruction set, so its guard goes to and fro with Highway's.
+#if defined(GNOMON_RASTER_SHADE_BLOCK_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef GNOMON_RASTER_SHADE_BLOCK_INL_H
+#undef GNOMON_RASTER_SHADE_BLOCK_INL_H
+#else
+#define GNOMON_RASTER_SHADE_BLOCK_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "raster/kernels.h"
+#include "raster/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace gnomon::raster {
+namespace HWY_NAMESPACE {
+
+using DF32 = hn::CappedTag<float, kPixels>;
+using VF32 = hn::Vec<DF32>;
+
+struct Vector3 {
+  VF32 x, y, z;
+};
+
+HWY_INLINE VF32 set(float value) { return hn::Set(DF32(), value); }
+HWY_INLINE Vector3 set(const float (&v)[3]) { return {set(v[0]), set(v[1]), set(v[2])}; }
+HWY_INLINE Vector3 add(const Vector3& a, const Vector3& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vector3 sub(const Vector3& a, const Vector3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector3 mul(const Vector3& a, const Vector3& b) {
+  return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
+}
+HWY_INLINE Vector3 scaled(const Vector3& v, VF32 s) {
+  return {hn::Mul(v.x, s), hn::Mul(v.y, s), hn::Mul(v.z, s)};
+}
+HWY_INLINE VF32 dot3(const Vector3& a, const Vector3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vector3 where(hn::Mask<DF32> mask, const Vector3& yes, const Vector3& no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
+          hn::IfThenElse(mask, yes.z, no.z)};
+}
+
+/// Zero stays zero.
+HWY_INLINE Vector3 normalized(const Vector3& v) {
+  const VF32 length = hn::Sqrt(dot3(v, v));
+  const Vector3 unit{hn::Div(v.x, length), hn::Div(v.y, length), hn::Div(v.z, length)};
+  return where(hn::Gt(length, hn::Zero(DF32())), unit, v);
+}
+
+HWY_INLINE VF32 power(VF32 base, int exponent) {
+  VF32 result = set(1.0f);
+  for (int n = exponent; n > 0; n >>= 1) {
+    if (n & 1) result = hn::Mul(result, base);
+    base = hn::Mul(base, base);
+  }
+  return result;
+}
+
+/// Perspective-correct weights of the mesh triangle's vertices, three planes of 64.
+HWY_INLINE void block_weights(const BlockWeights& w, PixelMask mask, float (&planes)[3][kPixels]) {
+  const hn::CappedTag<double, kWidth> d;
+  const hn::Rebind<float, decltype(d)> single_d;
+  const auto area = hn::Set(d, w.area);
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    if ((mask >> i & ((PixelMask{1} << hn::Lanes(d)) - 1)) == 0) continue;
+    const auto x = hn::Add(hn::Iota(d, 0.0), hn::Set(d, static_cast<double>(i % kWidth)));
+    const auto quotient = [&](std::size_t k) HWY_ATTR {
+      const auto first = hn::Set(d, w.edge[k] + static_cast<double>(i / kWidth) * w.step_y[k]);
+      const auto edge = hn::Add(first, hn::Mul(x, hn::Set(d, w.step_x[k])));
+      return hn::Mul(hn::Div(edge, area), hn::Set(d, w.inverse_w[k]));
+    };
+    const auto q0 = quotient(0), q1 = quotient(1), q2 = quotient(2);
+    const auto sum = hn::Add(hn::Add(q0, q1), q2);
+    const auto w0 = hn::Div(q0, sum), w1 = hn::Div(q1, sum), w2 = hn::Div(q2, sum);
+    if (!w.is_piece) {
+      hn::StoreU(hn::DemoteTo(single_d, w0), single_d, planes[w.order[0]] + i);
+      hn::StoreU(hn::DemoteTo(single_d, w1), single_d, planes[w.order[1]] + i);
+      hn::StoreU(hn::DemoteTo(single_d, w2), single_d, planes[w.order[2]] + i);
+      continue;
+    }
+    for (std::size_t v = 0; v < 3; ++v) {
+      const auto weight = hn::Add(
+          hn::Add(hn::Mul(hn::Set(d, w.piece[0][v]), w0), hn::Mul(hn::Set(d, w.piece[1][v]), w1)),
+          hn::Mul(hn::Set(d, w.piece[2][v]), w2));
+      hn::StoreU(hn::DemoteTo(single_d, weight), single_d, planes[v] + i);
+    }
+  }
+}
+
+/// A component of an attribute from its values at the three vertices.
+HWY_INLINE VF32 weighted(float a, float b, float c, VF32 p0, VF32 p1, VF32 p2) {
+  return hn::Add(hn::Add(hn::Mul(set(a), p0), hn::Mul(set(b), p1)), hn::Mul(set(c), p2));
+}
+
+struct LightSums {
+  Vector3 ambient, diffuse, specular;
+};
+
+HWY_INLINE void add_light(const BlockLight& light, const BlockLit& lit, const Vector3& normal,
+                          const Vector3& world, LightSums& sums) {
+  const DF32 d;
+  const VF32 zero = hn::Zero(d);
+  Vector3 to_light{set(light.position[0]), set(light.position[1]), set(light.position[2])};
+  VF32 strength = set(1.0f);
+  if (light.position[3] != 0.0f) {
+    to_light = sub(to_light, world);
+    const VF32 distance = hn::Sqrt(dot3(to_light, to_light));
+    const VF32 attenuation =
+        hn::Add(hn::Add(set(light.attenuation[0]), hn::Mul(set(light.attenuation[1]), distance)),
+                hn::Mul(set(light.attenuation[2]), hn::Mul(distance, distance)));
+    strength = hn::IfThenElseZero(hn::Gt(attenuation, zero), hn::Div(set(1.0f), attenuation));
+  }
+  to_light = normalized(to_light);
+  if (light.spot_cos_cutoff > -1.0f) {
+    const VF32 cosine = hn::Neg(dot3(to_light, set(light.spot_direction)));
+    const VF32 positive = hn::IfThenZeroElse(hn::Lt(cosine, zero), cosine);
+    strength = hn::IfThenZeroElse(hn::Lt(cosine, set(light.spot_cos_cutoff)),
+                                  hn::Mul(strength, power(positive, light.spot_exponent)));
+  }
+  sums.ambient = add(sums.ambient, scaled(set(light.ambient), strength));
+  const VF32 n_dot_l = dot3(normal, to_light);
+  const auto faces = hn::Gt(n_dot_l, zero);
+  sums.diffuse =
+      where(faces, add(sums.diffuse, scaled(set(light.diffuse), hn::Mul(n_dot_l, strength))),
+            sums.diffuse);
+  if (!lit.specular_matters) return;
+  const Vector3 half_vector = normalized(add(to_light, normalized(sub(set(lit.eye_world), world))));
+  const VF32 n_dot_h = dot3(normal, half_vector);
+  const VF32 highlight = hn::IfThenElseZero(hn::Gt(n_dot_h, zero), power(n_dot_h, lit.shininess));
+  sums.specular =
+      where(faces, add(sums.specular, scaled(set(light.specular), hn::Mul(highlight, strength))),
+            sums.specular);
+}
+
+HWY_INLINE Vector3 world_normal(const BlockShading& s, VF32 p0, VF32 p1, VF32 p2) {
+  const auto n = [&](std::size_t c) HWY_ATTR {
+    return weighted(s.normals[0][c], s.normals[1][c], s.normals[2][c], p0, p1, p2);
+  };
+  const VF32 x = n(0), y = n(1), z = n(2);
+  const auto row = [&](std::size_t r) HWY_ATTR {
+    const auto& m = s.lit->world_from_model_normal;
+    return hn::Add(hn::Add(hn::Mul(set(m[0][r]), x), hn::Mul(set(m[1][r]), y)),
+                   hn::Mul(set(m[2][r]), z));
+  };
+  return {row(0), row(1), row(2)};
+}
+
+HWY_INLINE Vector3 world_position(const BlockShading& s, VF32 p0, VF32 p1, VF32 p2) {
+  const auto p = [&](std::size_t c) HWY_ATTR {
+    return weighted(s.positions[0][c], s.positions[1][c], s.positions[2][c], p0, p1, p2);
+  };
+  const VF32 x = p(0), y = p(1), z = p(2), w = p(3);
+  const auto row = [&](std::size_t r) HWY_ATTR {
+    const auto& m = s.lit->world_from_model;
+    return hn::Add(hn::Add(hn::Mul(set(m[0][r]), x), hn::Mul(set(m[1][r]), y)),
+                   hn::Add(hn::Mul(set(m[2][r]), z), hn::Mul(set(m[3][r]), w)));
+  };
+  return {row(0), row(1), row(2)};
+}
+
+/// The lit colour without alpha; `base` is the mesh's colour.
+HWY_INLINE Vector3 lit_color(const BlockShading& s, VF32 p0, VF32 p1, VF32 p2,
+                             const Vector3& base) {
+  const BlockLit& lit = *s.lit;
+  const VF32 zero = hn::Zero(DF32());
+  Vector3 normal = normalized(world_normal(s, p0, p1, p2));
+  if (s.reverse_normal) normal = {hn::Neg(normal.x), hn::Neg(normal.y), hn::Neg(normal.z)};
+  Vector3 world{zero, zero, zero};
+  if (lit.world_matters) world = world_position(s, p0, p1, p2);
+  LightSums sums{set(lit.scene_ambient), {zero, zero, zero}, {zero, zero, zero}};
+  for (int i = 0; i < lit.light_count; ++i) add_light(lit.lights[i], lit, normal, world, sums);
+  Vector3 color{zero, zero, zero};
+  if (lit.ambient) color = add(color, mul(mul(set(lit.material_ambient), sums.ambient), base));
+  if (lit.diffuse) color = add(color, mul(mul(set(lit.material_diffuse), sums.diffuse), base));
+  if (lit.specular && lit.specular_matters)
+    color = add(color, mul(set(lit.material_specular), sums.specular));
+  if (lit.emission) color = add(color, set(lit.material_emission));
+  return color;
+}
+
+void shade_block(const BlockShading& s, PixelMask mask, float* colors) noexcept {
+  const DF32 d;
+  alignas(64) float planes[3][kPixels];
+  block_weights(s.weights, mask, planes);
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    if ((mask >> i & ((PixelMask{1} << hn::Lanes(d)) - 1)) == 0) continue;
+    const VF32 p0 = hn::Load(d, planes[0] + i), p1 = hn::Load(d, planes[1] + i),
+               p2 = hn::Load(d, planes[2] + i);
+    const auto base = [&](std::size_t c) HWY_ATTR {
+      return s.has_colors ? weighted(s.colors[0][c], s.colors[1][c], s.colors[2][c], p0, p1, p2)
+                          : set(1.0f);
+    };
+    const Vector3 rgb{base(0), base(1), base(2)};
+    const VF32 alpha = base(3);
+    const Vector3 color =
+        s.lit ? lit_color(s, p0, p1, p2, rgb)
+              : mul({set(s.flat_color[0]), set(s.flat_color[1]), set(s.flat_color[2])}, rgb);
+    hn::StoreU(color.x, d, colors + i);
+    hn::StoreU(color.y, d, colors + kPixels + i);
+    hn::StoreU(color.z, d, colors + 2 * kPixels + i);
+    hn::StoreU(hn::Mul(set(s.lit ? s.lit->material_alpha : s.flat_color[3]), alpha), d,
+               colors + 3 * kPixels + i);
+  }
+}
+
+void round_colors(const float* colors, std::uint8_t* rounded) noexcept {
+  const DF32 d;
+  const DU32 whole_d;
+  const auto channel = [&](std::size_t c, std::size_t i) HWY_ATTR {
+    const VF32 value = hn::LoadU(d, colors + c * kPixels + i);
+    // NaN is not greater than 0.
+    const VF32 positive = hn::IfThenElseZero(hn::Gt(value, hn::Zero(d)), value);
+    const VF32 scaled = hn::Mul(hn::Min(positive, set(1.0f)), set(255.0f));
+    return hn::BitCast(whole_d, hn::NearestInt(scaled));
+  };
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    const auto rgba =
+        hn::Or(hn::Or(channel(0, i), hn::ShiftLeft<8>(channel(1, i))),
+               hn::Or(hn::ShiftLeft<16>(channel(2, i)), hn::ShiftLeft<24>(channel(3, i))));
+    hn::StoreU(rgba, whole_d, reinterpret_cast<std::uint32_t*>(rounded) + i);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace gnomon::raster
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target guard
