@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "raster/depth_decision.h"
 #include "raster/interpolate.h"
-#include "raster/write_color.h"
 
 namespace gnomon::raster {
 
@@ -67,6 +67,8 @@ FaceSetup make_face_setup(const FragmentTests& tests, bool color) {
   face.pass_marks = fail_writes || color || (tests.depth_test && tests.depth_write) ||
                     writes(tests, stencil.pass);
   face.fail_marks = fail_writes || writes(tests, stencil.depth_fail);
+  face.depth_always = !tests.depth_test || tests.depth_func == CompareFunc::always;
+  face.depth_never = tests.depth_test && tests.depth_func == CompareFunc::never;
   if (!passes_all || !tests.depth_test || tests.depth_write || color ||
       face.pass_marks == face.fail_marks)
     return face;
@@ -140,95 +142,22 @@ BlockMask cover_pixels_in_64_bits(const SetupTriangle& triangle, int x0, int y0,
 }
 
 /// The blocks of a tile that a box in its pixels touches.
-BlockMask blocks_of(const PixelBox& box) {
-  const PixelBox blocks{box.x0 / kBlockSize, box.y0 / kBlockSize, (box.x1 - 1) / kBlockSize + 1,
-                        (box.y1 - 1) / kBlockSize + 1};
-  const BlockMask row = (0xffu >> (8 - (blocks.x1 - blocks.x0))) << blocks.x0;
-  const BlockMask rows = ~BlockMask{0} >> (64 - 8 * (blocks.y1 - blocks.y0)) << 8 * blocks.y0;
-  return row * 0x0101010101010101u & rows;
-}
-
-/// Slacks of Kernels::compare_ranges and what its masks then mean.
-struct Decision {
-  std::int32_t below_slack, above_slack;
-  bool below_passes, above_passes;
-  bool below_fails, above_fails;
+struct BoxBlocks {
+  BlockMask mask;
+  int count;
 };
 
-Decision decision(CompareFunc func) {
-  switch (func) {
-    case CompareFunc::less:
-      return {0, 1, true, false, false, true};
-    case CompareFunc::less_equal:
-      return {1, 0, true, false, false, true};
-    case CompareFunc::greater:
-      return {1, 0, false, true, true, false};
-    case CompareFunc::greater_equal:
-      return {0, 1, false, true, true, false};
-    case CompareFunc::equal:
-      return {0, 0, false, false, true, true};
-    default:
-      return {0, 0, true, true, false, false};
-  }
+BoxBlocks blocks_of(const PixelBox& box) {
+  const int x0 = box.x0 / kBlockSize, y0 = box.y0 / kBlockSize;
+  const int width = (box.x1 - 1) / kBlockSize + 1 - x0, height = (box.y1 - 1) / kBlockSize + 1 - y0;
+  const BlockMask row = (0xffu >> (8 - width)) << x0;
+  const BlockMask rows = ~BlockMask{0} >> (64 - 8 * height) << 8 * y0;
+  return {row * 0x0101010101010101u & rows, width * height};
 }
 
-bool decided_by_itself(CompareFunc func) {
-  return func == CompareFunc::always || func == CompareFunc::never;
-}
-
-/// Bounds of the triangle's depths by those of its vertices, in depth units.
-std::pair<std::int32_t, std::int32_t> vertex_depths(const SetupTriangle& triangle,
-                                                    const DrawSetup& setup) {
-  const auto& v = triangle.vertices;
-  const auto [least, greatest] = std::minmax({v[0].z_fx, v[1].z_fx, v[2].z_fx});
-  const int bits = depth_fraction_bits(setup.depth_format);
-  const std::int64_t half = std::int64_t{1} << (bits - 1);
-  const auto units = [&](std::int64_t value) {
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(
-        (value + triangle.depth.offset + half) >> bits, setup.depth_low, setup.depth_high));
-  };
-  return {units(least - kPlaneError), units(greatest + kPlaneError)};
-}
-
-/// Bounds of the plane over a tile's blocks, if they are of use.
-void bound_plane(const TileDepth& plane, BlockDepths& depths) {
-  // Where the plane is so far from any depth, or so steep, the vertices' bounds must do.
-  constexpr std::int64_t kLimit = std::int64_t{1} << 27;
-  const std::int64_t one = std::int64_t{1} << plane.fraction_bits;
-  const auto base = static_cast<std::int64_t>(plane.base);
-  const auto dx = static_cast<std::int64_t>(plane.step_x);
-  const auto dy = static_cast<std::int64_t>(plane.step_y);
-  const auto within = [](std::int64_t value, std::int64_t limit) {
-    return value > -limit && value < limit;
-  };
-  if (!within(base, kLimit * one) || !within(dx, kLimit * one / 64) ||
-      !within(dy, kLimit * one / 64)) {
-    depths.low = depths.least;
-    depths.high = depths.greatest;
-    return;
-  }
-  constexpr int kSpan = kBlockSize - 1;
-  const auto floor = [&](std::int64_t value) {
-    return static_cast<std::int32_t>(value >> plane.fraction_bits);
-  };
-  const auto ceil = [&](std::int64_t value) {
-    return static_cast<std::int32_t>(-(-value >> plane.fraction_bits));
-  };
-  depths.low =
-      floor(base + (std::min<std::int64_t>(dx, 0) + std::min<std::int64_t>(dy, 0)) * kSpan);
-  depths.low_step_x = floor(dx * kBlockSize);
-  depths.low_step_y = floor(dy * kBlockSize);
-  depths.high =
-      ceil(base + (std::max<std::int64_t>(dx, 0) + std::max<std::int64_t>(dy, 0)) * kSpan);
-  depths.high_step_x = ceil(dx * kBlockSize);
-  depths.high_step_y = ceil(dy * kBlockSize);
-}
-
-/// A triangle that touches no more blocks than these is drawn without looking at its edges over the
-/// tile first.
+/// A triangle that touches no more blocks than these is drawn without looking at its edges and its
+/// plane over the tile first.
 constexpr int kFewBlocks = 4;
-
-bool few(BlockMask blocks) { return __builtin_popcountll(blocks) <= kFewBlocks; }
 
 }  // namespace
 
@@ -237,12 +166,15 @@ FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets) {
   setup.color = targets.color && any(draw.state.color.write);
   setup.front = make_face_setup(resolve_tests(draw, targets, true), setup.color);
   setup.back = make_face_setup(resolve_tests(draw, targets, false), setup.color);
+  bool keeps_stencil = true;
   for (const FaceSetup* face : {&setup.front, &setup.back}) {
     const bool changes = writes_stencil(face->tests);
-    setup.keeps_stencil = setup.keeps_stencil && !changes;
+    keeps_stencil = keeps_stencil && !changes;
     setup.uses_stencil =
         setup.uses_stencil || !stencil_test_passes_all(face->tests) || (changes && !face->counts);
   }
+  for (FaceSetup* face : {&setup.front, &setup.back})
+    face->selects = keeps_stencil && !stencil_test_passes_all(face->tests);
   if (!setup.color) return setup;
   if (is_constant(draw))
     setup.constant = shade(draw.shading, Fragment{});
@@ -261,6 +193,8 @@ DrawInTile::DrawInTile(const DrawSetup& setup, const FragmentSetup& fragments, T
       whole_(setup.box.x0 <= x0_ && setup.box.y0 <= y0_ && setup.box.x1 >= x0_ + kTileSize &&
              setup.box.y1 >= y0_ + kTileSize) {
   if (fragments.uses_stencil) pixels_.add_counts();
+  if (fragments.color)
+    writer_.emplace(kernels_, *pixels.targets().color, pixels.tile(), setup.draw->state.color);
 }
 
 void DrawInTile::set_plane(const SetupTriangle& triangle, TestedBlocks& tested) const {
@@ -275,53 +209,55 @@ void DrawInTile::set_plane(const SetupTriangle& triangle, TestedBlocks& tested) 
   plane.high = setup_.depth_high;
 }
 
-/// Finds the blocks whose depth test is decided as a whole and returns those that can still be
-/// marked; sets the plane if one of them needs it.
-BlockMask DrawInTile::decide(const SetupTriangle& triangle, const FaceSetup& face, BlockMask blocks,
-                             TestedBlocks& tested) {
-  const auto settle = [&](BlockMask passes, BlockMask fails) {
-    tested.depth_passes |= passes;
-    tested.depth_fails |= fails;
-    if (!face.pass_marks) blocks &= ~tested.depth_passes;
-    if (!face.fail_marks) blocks &= ~tested.depth_fails;
-  };
-  bool has_plane = false;
-  const CompareFunc func = face.tests.depth_func;
-  if (decided_by_itself(func)) {
-    settle(func == CompareFunc::always ? kAllBlocks : 0,
-           func == CompareFunc::never ? kAllBlocks : 0);
-  } else {
-    const Decision d = decision(func);
-    const auto [least, greatest] = vertex_depths(triangle, setup_);
-    BlockDepths depths{.low = least, .high = greatest, .least = least, .greatest = greatest};
-    const auto settle_ranges = [&](BlockMask below, BlockMask above) {
-      settle((d.below_passes ? below : 0) | (d.above_passes ? above : 0),
-             (d.below_fails ? below : 0) | (d.above_fails ? above : 0));
-    };
-    DepthRanges& ranges = pixels_.ranges();
-    if (!face.tests.depth_write) {
-      pixels_.know_whole_range();
-      const bool below = greatest < static_cast<std::int32_t>(ranges.whole_least) + d.below_slack;
-      const bool above = least > static_cast<std::int32_t>(ranges.whole_greatest) - d.above_slack;
-      settle_ranges(below ? kAllBlocks : 0, above ? kAllBlocks : 0);
-    } else {
-      pixels_.know_ranges(blocks);
-    }
-    if (blocks & ~(tested.depth_passes | tested.depth_fails)) {
-      if (!few(blocks)) {
-        set_plane(triangle, tested);
-        bound_plane(tested.plane, depths);
-        has_plane = true;
-      }
-      const DecidedBlocks decided = kernels_.compare_ranges(
-          depths, ranges.least.data(), ranges.greatest.data(), d.below_slack, d.above_slack);
-      settle_ranges(decided.below, decided.above);
-    }
-  }
-  const bool needs_plane =
-      face.tests.depth_write || (blocks & ~(tested.depth_passes | tested.depth_fails)) != 0;
-  if (blocks && needs_plane && !has_plane) set_plane(triangle, tested);
+/// Those of the blocks that can still be marked.
+BlockMask DrawInTile::marked(const FaceSetup& face, BlockMask blocks, const TestedBlocks& tested) {
+  if (!face.pass_marks) blocks &= ~tested.depth_passes;
+  if (!face.fail_marks) blocks &= ~tested.depth_fails;
   return blocks;
+}
+
+/// Decides the depth test for the whole tile by bounds of the triangle's depths.
+void DrawInTile::decide_tile(const FaceSetup& face, std::int32_t least, std::int32_t greatest,
+                             TestedBlocks& tested) const {
+  // Where depths are written the tile's range would have to be found again and again.
+  if (face.tests.depth_write) return;
+  pixels_.know_whole_range();
+  const DepthRanges& ranges = pixels_.ranges();
+  const DepthDecision decision(face.tests.depth_func);
+  switch (decision.of(least, greatest, ranges.whole_least, ranges.whole_greatest)) {
+    case DepthOutcome::passes:
+      tested.depth_passes = kAllBlocks;
+      break;
+    case DepthOutcome::fails:
+      tested.depth_fails = kAllBlocks;
+      break;
+    case DepthOutcome::open:
+      break;
+  }
+}
+
+/// The same block by block, for a few by the vertices alone.
+void DrawInTile::decide_few(const SetupTriangle& triangle, const FaceSetup& face, BlockMask blocks,
+                            TestedBlocks& tested) const {
+  pixels_.know_ranges(blocks);
+  const DepthRanges& ranges = pixels_.ranges();
+  const DepthDecision decision(face.tests.depth_func);
+  for_each_block_of(blocks, [&](std::size_t b) {
+    const DepthOutcome outcome = decision.of(triangle.least_depth, triangle.greatest_depth,
+                                             ranges.least[b], ranges.greatest[b]);
+    if (outcome == DepthOutcome::passes) tested.depth_passes |= BlockMask{1} << b;
+    if (outcome == DepthOutcome::fails) tested.depth_fails |= BlockMask{1} << b;
+  });
+}
+
+void DrawInTile::decide_blocks(const FaceSetup& face, const BlockDepths& depths, BlockMask blocks,
+                               TestedBlocks& tested) const {
+  pixels_.know_ranges(blocks);
+  const DepthRanges& ranges = pixels_.ranges();
+  const DepthDecision decision(face.tests.depth_func);
+  decision.settle(kernels_.compare_ranges(depths, ranges.least.data(), ranges.greatest.data(),
+                                          decision.below_slack, decision.above_slack),
+                  tested);
 }
 
 BlockMask DrawInTile::blocks_with_stencil(const FaceSetup& face) {
@@ -333,51 +269,60 @@ BlockMask DrawInTile::blocks_with_stencil(const FaceSetup& face) {
 void DrawInTile::draw(const SetupTriangle& triangle,
                       std::span<const PieceWeights> pieces) noexcept {
   const FaceSetup& face = triangle.front_facing ? fragments_.front : fragments_.back;
-  if (!face.pass_marks && !face.fail_marks) return;
   const PixelBox box = {std::max(triangle.box.x0 - x0_, 0), std::max(triangle.box.y0 - y0_, 0),
                         std::min(triangle.box.x1 - x0_, kTileSize),
                         std::min(triangle.box.y1 - y0_, kTileSize)};
   if (box.empty()) return;
-  BlockMask blocks = blocks_of(box);
-  if (fragments_.keeps_stencil && !stencil_test_passes_all(face.tests)) {
-    blocks &= blocks_with_stencil(face);
-    if (!blocks) return;
-  }
+  const BoxBlocks near = blocks_of(box);
+  const bool few = near.count <= kFewBlocks;
+  BlockMask blocks = near.mask;
+  if (face.selects) blocks &= blocks_with_stencil(face);
+
+  TestedBlocks tested{.depth_passes = face.depth_always ? kAllBlocks : 0,
+                      .depth_fails = face.depth_never ? kAllBlocks : 0,
+                      .depth = pixels_.depth(),
+                      .stencil = pixels_.stencil()};
+  const bool compares = !face.depth_always && !face.depth_never;
+  if (compares) decide_tile(face, triangle.least_depth, triangle.greatest_depth, tested);
+  blocks = marked(face, blocks, tested);
+  if (!blocks) return;
+
   TileEdges edges;
   const Cover cover = cross_tile(triangle, x0_, y0_, edges);
   if (cover == Cover::none) return;
-  BlockMask filled = 0;
-  if (edges.count == 0) {
-    filled = kAllBlocks;
-  } else if (cover == Cover::in_32_bits && !few(blocks)) {
+  const auto is_open = [&] { return !(tested.depth_passes | tested.depth_fails); };
+  BlockDepths depths;
+  bool has_plane = false;
+  if (!few && compares && is_open()) {
+    set_plane(triangle, tested);
+    has_plane = true;
+    depths = bound_plane(tested.plane, triangle.least_depth, triangle.greatest_depth);
+    const DepthBounds inside = bounds_in_box(tested.plane, depths, box);
+    decide_tile(face, inside.least, inside.greatest, tested);
+    blocks = marked(face, blocks, tested);
+    if (!blocks) return;
+  }
+  BlockMask filled = edges.count == 0 ? kAllBlocks : 0;
+  if (!few && edges.count > 0 && cover == Cover::in_32_bits)
     blocks &= kernels_.cover_blocks(edges, filled);
+  if (compares && is_open() && blocks) {
+    if (few)
+      decide_few(triangle, face, blocks, tested);
+    else
+      decide_blocks(face, depths, blocks, tested);
+    blocks = marked(face, blocks, tested);
   }
-
-  TestedBlocks tested{.depth = pixels_.depth(), .stencil = pixels_.stencil()};
-  if (face.tests.depth_test) blocks = decide(triangle, face, blocks, tested);
+  if (face.counts && whole_) blocks = count_filled(face, blocks, filled, tested);
   if (!blocks) return;
+  const bool needs_plane =
+      face.tests.depth_test &&
+      (face.tests.depth_write || (blocks & ~(tested.depth_passes | tested.depth_fails)) != 0);
+  if (needs_plane && !has_plane) set_plane(triangle, tested);
 
-  if (face.counts && whole_) {
-    const BlockMask counted =
-        blocks & filled & (face.count_on_pass ? tested.depth_passes : tested.depth_fails);
-    if (counted) pixels_.count(counted, face.delta);
-    blocks &= ~counted;
-  }
   std::array<PixelMask, kBlocksPerTile> covered;
-  for_each_block_of(blocks & filled, [&](std::size_t b) { covered[b] = kAllPixels; });
-  const BlockMask crossed = blocks & ~filled;
-  if (crossed)
-    blocks = (blocks & filled) |
-             (cover == Cover::in_32_bits
-                  ? kernels_.cover_pixels(edges, crossed, covered.data())
-                  : cover_pixels_in_64_bits(triangle, x0_, y0_, crossed, covered.data()));
-  if (!whole_)
-    for_each_block_of(blocks, [&](std::size_t b) {
-      covered[b] &= box_mask(setup_.box, x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize,
-                             y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize);
-    });
-  tested.blocks = blocks;
-  if (!blocks) return;
+  tested.blocks = cover_blocks(triangle, cover == Cover::in_32_bits ? &edges : nullptr, blocks,
+                               filled, covered.data());
+  if (!tested.blocks) return;
   if (face.counts) {
     kernels_.count_blocks(face.tests.depth_func, face.count_on_pass, face.delta, tested,
                           covered.data());
@@ -389,13 +334,41 @@ void DrawInTile::draw(const SetupTriangle& triangle,
   if (fragments_.color) color_blocks(triangle, pieces, passed, covered.data());
 }
 
+/// Counts the blocks that the triangle fills and marks as a whole, and returns the others.
+BlockMask DrawInTile::count_filled(const FaceSetup& face, BlockMask blocks, BlockMask filled,
+                                   const TestedBlocks& tested) {
+  const BlockMask counted =
+      blocks & filled & (face.count_on_pass ? tested.depth_passes : tested.depth_fails);
+  if (counted) pixels_.count(counted, face.delta);
+  return blocks & ~counted;
+}
+
+/// The pixels that the triangle covers in each of the blocks; `edges` is null if they do not fit 32
+/// bits. Returns the blocks where there are some.
+BlockMask DrawInTile::cover_blocks(const SetupTriangle& triangle, const TileEdges* edges,
+                                   BlockMask blocks, BlockMask filled, PixelMask* covered) const {
+  for_each_block_of(blocks & filled, [&](std::size_t b) { covered[b] = kAllPixels; });
+  const BlockMask crossed = blocks & ~filled;
+  if (crossed)
+    blocks =
+        (blocks & filled) | (edges ? kernels_.cover_pixels(*edges, crossed, covered)
+                                   : cover_pixels_in_64_bits(triangle, x0_, y0_, crossed, covered));
+  if (whole_) return blocks;
+  BlockMask touched = 0;
+  for_each_block_of(blocks, [&](std::size_t b) {
+    covered[b] &= box_mask(setup_.box, x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize,
+                           y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize);
+    if (covered[b]) touched |= BlockMask{1} << b;
+  });
+  return touched;
+}
+
 void DrawInTile::color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
                               BlockMask blocks, const PixelMask* passed) const {
   const Draw& draw = *setup_.draw;
-  const BlockWriter writer(kernels_, *pixels_.targets().color, pixels_.tile(), draw.state.color);
   if (fragments_.constant) {
     for_each_block_of(blocks,
-                      [&](std::size_t b) { writer.write(b, passed[b], *fragments_.constant); });
+                      [&](std::size_t b) { writer_->write(b, passed[b], *fragments_.constant); });
     return;
   }
   const bool in_vectors = fragments_.shading && kernels_.shade_block;
@@ -416,7 +389,7 @@ void DrawInTile::color_blocks(const SetupTriangle& triangle, std::span<const Pie
         set_color(colors, i, shade(draw.shading, interpolate(draw, triangle, pieces, px, py)));
       });
     }
-    writer.write(b, passed[b], colors);
+    writer_->write(b, passed[b], colors);
   });
 }
 

@@ -9,6 +9,7 @@
 #include "raster/geometry.h"
 #include "raster/kernels.h"
 #include "raster/tile_pixels.h"
+#include "raster/write_color.h"
 
 namespace gnomon::raster {
 
@@ -17,6 +18,11 @@ struct FaceSetup {
   FragmentTests tests;
   /// A fragment that passes (or fails) the depth test can leave a mark in some buffer.
   bool pass_marks = false, fail_marks = false;
+  /// Every fragment passes (or fails) the depth test, whatever the depths are.
+  bool depth_always = true, depth_never = false;
+  /// The stencil test lets some fragments through and the draw changes no stencil, so blocks can
+  /// be sorted out beforehand.
+  bool selects = false;
   /// Nothing but the depth test decides and the only mark is `delta`, added modulo 256 to the
   /// stencil of fragments that pass (count_on_pass) or fail it.
   bool counts = false, count_on_pass = false;
@@ -34,8 +40,6 @@ struct FragmentSetup {
   std::optional<DrawShading> shading;
   /// The stencil is read, or written otherwise than by counts.
   bool uses_stencil = false;
-  /// No fragment changes the stencil.
-  bool keeps_stencil = true;
 };
 
 FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets);
@@ -50,8 +54,17 @@ class DrawInTile {
   void draw(const SetupTriangle& triangle, std::span<const PieceWeights> pieces) noexcept;
 
  private:
-  BlockMask decide(const SetupTriangle& triangle, const FaceSetup& face, BlockMask blocks,
-                   TestedBlocks& tested);
+  static BlockMask marked(const FaceSetup& face, BlockMask blocks, const TestedBlocks& tested);
+  void decide_tile(const FaceSetup& face, std::int32_t least, std::int32_t greatest,
+                   TestedBlocks& tested) const;
+  void decide_few(const SetupTriangle& triangle, const FaceSetup& face, BlockMask blocks,
+                  TestedBlocks& tested) const;
+  void decide_blocks(const FaceSetup& face, const BlockDepths& depths, BlockMask blocks,
+                     TestedBlocks& tested) const;
+  BlockMask count_filled(const FaceSetup& face, BlockMask blocks, BlockMask filled,
+                         const TestedBlocks& tested);
+  BlockMask cover_blocks(const SetupTriangle& triangle, const TileEdges* edges, BlockMask blocks,
+                         BlockMask filled, PixelMask* covered) const;
   void set_plane(const SetupTriangle& triangle, TestedBlocks& tested) const;
   BlockMask blocks_with_stencil(const FaceSetup& face);
   void color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
@@ -65,6 +78,7 @@ class DrawInTile {
   const int x0_, y0_;
   /// The draw's box lies around the whole tile.
   const bool whole_;
+  std::optional<BlockWriter> writer_;
   /// Blocks whose stencil lets a fragment of the front (back) through; computed when needed.
   std::optional<BlockMask> front_blocks_, back_blocks_;
 };

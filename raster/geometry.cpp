@@ -70,6 +70,20 @@ PieceWeights weights_of(const std::array<const Corner*, 3>& corners, bool swappe
           corners[swapped ? 1 : 2]->weights};
 }
 
+/// Bounds of the fragments' depths by those of the vertices.
+void bound_depths(const DrawSetup& setup, SetupTriangle& triangle) {
+  const auto& v = triangle.vertices;
+  const auto [least, greatest] = std::minmax({v[0].z_fx, v[1].z_fx, v[2].z_fx});
+  const int bits = depth_fraction_bits(setup.depth_format);
+  const std::int64_t half = std::int64_t{1} << (bits - 1);
+  const auto units = [&](std::int64_t value) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(
+        (value + triangle.depth.offset + half) >> bits, setup.depth_low, setup.depth_high));
+  };
+  triangle.least_depth = units(least - kPlaneError);
+  triangle.greatest_depth = units(greatest + kPlaneError);
+}
+
 /// Sets up one snapped triangle; false if it covers no pixel or is culled.
 bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVertex& v1,
             const ProjectedVertex& v2, SetupTriangle& out) {
@@ -94,6 +108,7 @@ bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVe
   out.inverse_w = {v0.inverse_w, second.inverse_w, third.inverse_w};
   out.depth = make_depth_plane(out.vertices, out.area, state.polygon_offset, setup.depth_format,
                                setup.depth_low, setup.depth_high);
+  bound_depths(setup, out);
   return true;
 }
 

@@ -49,6 +49,8 @@ struct SetupTriangle {
   /// Twice its area, positive.
   std::int64_t area = 1;
   DepthPlane depth;
+  /// Its fragments' depths lie between these, in depth units.
+  std::int32_t least_depth = 0, greatest_depth = 0;
   PixelBox box;
   /// The mesh's triangle is at this place among its indices.
   std::uint32_t first_index = 0;

@@ -182,8 +182,9 @@ struct Kernels {
   /// plain C++: there shade() and interpolate() (raster/shading.h) do it, pixel by pixel.
   void (*shade_block)(const BlockShading& shading, PixelMask mask, float* colors) noexcept;
 
-  /// Rounds 64 colours in four planes to RGBA8 (raster/unorm.h).
-  void (*round_colors)(const float* colors, std::uint8_t* rounded) noexcept;
+  /// Rounds the mask's pixels of 64 colours in four planes to RGBA8 (raster/unorm.h) and stores
+  /// them; the others stay.
+  void (*store_colors)(const float* colors, PixelMask mask, std::uint8_t* stored) noexcept;
 
   /// Clip-space positions of `count` vertices: ((m0 x + m1 y) + m2 z) + m3 w in float32, each
   /// operation rounded once.

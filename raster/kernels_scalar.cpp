@@ -254,10 +254,11 @@ void blend_block(const ColorState& state, const std::uint8_t (&constant)[4], Pix
   });
 }
 
-void round_colors(const float* colors, std::uint8_t* rounded) noexcept {
-  for (std::size_t i = 0; i < kPixelsPerBlock; ++i)
+void store_colors(const float* colors, PixelMask mask, std::uint8_t* stored) noexcept {
+  for_each_pixel(mask, [&](std::size_t i) {
     for (std::size_t c = 0; c < 4; ++c)
-      rounded[4 * i + c] = float_to_unorm8(colors[c * kPixelsPerBlock + i]);
+      stored[4 * i + c] = float_to_unorm8(colors[c * kPixelsPerBlock + i]);
+  });
 }
 
 void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count,
@@ -274,7 +275,7 @@ void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count
 const Kernels& scalar_kernels() {
   static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges, test_blocks,
                                     count_blocks, add_to_blocks, stencil_blocks, depth_range,
-                                    fill_block,   blend_block,   nullptr,        round_colors,
+                                    fill_block,   blend_block,   nullptr,        store_colors,
                                     transform};
   return kKernels;
 }

@@ -32,7 +32,7 @@ namespace HWY_NAMESPACE {
 const Kernels* kernels_of_this_target() {
   static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges, test_blocks,
                                     count_blocks, add_to_blocks, stencil_blocks, depth_range,
-                                    fill_block,   blend_block,   shade_block,    round_colors,
+                                    fill_block,   blend_block,   shade_block,    store_colors,
                                     transform};
   return &kKernels;
 }
@@ -47,8 +47,8 @@ HWY_AFTER_NAMESPACE();
 namespace gnomon::raster {
 
 const Kernels* simd_kernels(Isa isa) {
-  const std::int64_t machine = hwy::SupportedTargets();
-  [[maybe_unused]] const auto if_machine_has = [machine](std::int64_t target,
+  static const std::int64_t machine = hwy::SupportedTargets();
+  [[maybe_unused]] const auto if_machine_has = [](std::int64_t target,
                                                          const Kernels* kernels) {
     return (machine & target) != 0 ? kernels : nullptr;
   };

@@ -209,9 +209,10 @@ void shade_block(const BlockShading& s, PixelMask mask, float* colors) noexcept 
   }
 }
 
-void round_colors(const float* colors, std::uint8_t* rounded) noexcept {
+void store_colors(const float* colors, PixelMask mask, std::uint8_t* stored) noexcept {
   const DF32 d;
   const DU32 whole_d;
+  auto* const to = reinterpret_cast<std::uint32_t*>(stored);
   const auto channel = [&](std::size_t c, std::size_t i) HWY_ATTR {
     const VF32 value = hn::LoadU(d, colors + c * kPixels + i);
     // NaN is not greater than 0.
@@ -220,10 +221,12 @@ void round_colors(const float* colors, std::uint8_t* rounded) noexcept {
     return hn::BitCast(whole_d, hn::NearestInt(scaled));
   };
   for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    const auto here = lanes_of(whole_d, mask, i);
+    if (hn::AllFalse(whole_d, here)) continue;
     const auto rgba =
         hn::Or(hn::Or(channel(0, i), hn::ShiftLeft<8>(channel(1, i))),
                hn::Or(hn::ShiftLeft<16>(channel(2, i)), hn::ShiftLeft<24>(channel(3, i))));
-    hn::StoreU(rgba, whole_d, reinterpret_cast<std::uint32_t*>(rounded) + i);
+    hn::BlendedStore(rgba, here, whole_d, to + i);
   }
 }
 

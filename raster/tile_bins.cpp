@@ -14,7 +14,7 @@ class EdgeInRows {
       : a_(edge.a),
         greatest_(static_cast<double>(edge.at(128, 128)) +
                   kSpan * (std::max(edge.a, 0) + std::max(edge.b, 0))),
-        step_x_(kTile * edge.a),
+        per_step_x_(-1.0 / (kTile * edge.a)),
         step_y_(kTile * edge.b) {}
 
   /// Narrows tiles [first, last] of row y.
@@ -25,7 +25,7 @@ class EdgeInRows {
       return;
     }
     // A thousandth of a tile is more than all rounding.
-    const double root = -here / step_x_;
+    const double root = here * per_step_x_;
     if (a_ > 0 && root - kSlack > first)
       first = root > last ? last + 1 : static_cast<int>(std::ceil(root - kSlack));
     if (a_ < 0 && root + kSlack < last)
@@ -36,7 +36,7 @@ class EdgeInRows {
   static constexpr double kTile = kTileSize * 256.0, kSpan = (kTileSize - 1) * 256.0;
   static constexpr double kSlack = 1e-3;
   std::int32_t a_;
-  double greatest_, step_x_, step_y_;
+  double greatest_, per_step_x_, step_y_;
 };
 
 }  // namespace

@@ -20,9 +20,13 @@ BlockWriter::BlockWriter(const Kernels& kernels, ColorBuffer& target, TileIndex 
 }
 
 void BlockWriter::write(std::size_t b, PixelMask mask, const ColorPlanes& colors) const {
+  if (rgba8_ && plain_) {
+    kernels_.store_colors(colors.data(), mask, (rgba8_ + b * kPixelsPerBlock)->data());
+    return;
+  }
   if (rgba8_) {
     Rgba8Block rounded;
-    kernels_.round_colors(colors.data(), rounded.data()->data());
+    kernels_.store_colors(colors.data(), mask, rounded.data()->data());
     write(b, mask, rounded);
     return;
   }
