@@ -4,13 +4,14 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 
-#include <functional>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "bench/layer.h"
@@ -28,6 +29,7 @@ struct GlMesh {
   GLsizei count = 0;
   glm::mat4 world_from_model{1.0f};
   raster::FrontFace front_face = raster::FrontFace::ccw;
+  bool cull_back = false;
   raster::Material material;
 };
 
@@ -63,6 +65,7 @@ enum class Attributes { position, lit };
 void draw(const GlMesh& mesh, Attributes attributes) {
   glLoadMatrixf(glm::value_ptr(mesh.world_from_model));
   glFrontFace(mesh.front_face == raster::FrontFace::ccw ? GL_CCW : GL_CW);
+  if (mesh.cull_back) glEnable(GL_CULL_FACE);
   glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices);
   glVertexPointer(4, GL_FLOAT, 0, nullptr);
   if (attributes == Attributes::lit) {
@@ -74,6 +77,17 @@ void draw(const GlMesh& mesh, Attributes attributes) {
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
   glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
   glDisableClientState(GL_NORMAL_ARRAY);
+  if (mesh.cull_back) glDisable(GL_CULL_FACE);
+}
+
+/// Normals keep their length under a rotation, and Mesa need not make it good a vertex.
+bool scales(const glm::mat4& world_from_model) {
+  constexpr float kRounding = 1e-4f;
+  for (int column = 0; column < 3; ++column) {
+    const float length = glm::length(glm::vec3(world_from_model[column]));
+    if (std::abs(length - 1.0f) > kRounding) return true;
+  }
+  return false;
 }
 
 void set_color_write(bool on) {
@@ -91,7 +105,6 @@ class GlRunner final : public Runner {
     }
     glViewport(0, 0, subject.size.width, subject.size.height);
     glEnable(GL_DEPTH_TEST);
-    glEnable(GL_NORMALIZE);
     glEnableClientState(GL_VERTEX_ARRAY);
     if (subject_.kind == Kind::layer) {
       upload_layer();
@@ -152,10 +165,12 @@ class GlRunner final : public Runner {
     pipeline::TopologyCache topologies;
     const auto objects = pipeline::place_objects(subject_.scene, subject_.camera, topologies);
     for (const auto& object : objects) {
+      if (scales(object.object->world_from_model)) glEnable(GL_NORMALIZE);
       for (std::size_t i = 0; i < object.meshes.size(); ++i) {
         surfaces_.push_back(
             upload(object.meshes[i]->view(), object.object->world_from_model, object.front_face));
         surfaces_.back().material = object.object->model->parts[i].material;
+        surfaces_.back().cull_back = shows_one_side(object);
       }
     }
     if (subject_.kind != Kind::shadows) return;

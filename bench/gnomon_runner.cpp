@@ -30,6 +30,10 @@ struct Buffers {
         stencil(size.width, size.height) {}
 };
 
+raster::Cull cull(const pipeline::PlacedObject& object) {
+  return shows_one_side(object) ? raster::Cull::back : raster::Cull::none;
+}
+
 struct Recorded {
   raster::Frame frame;
   double volumes_ms = 0.0;
@@ -133,6 +137,7 @@ class GnomonRunner final : public Runner {
     raster::State surface = pipeline::surface_state();
     surface.depth = raster::DepthState{};
     for (const auto& object : objects) {
+      surface.cull = cull(object);
       pipeline::draw_lit(out.frame, object, subject_.scene, subject_.camera,
                          {.ambient = true, .diffuse = true, .lights = subject_.scene.lights},
                          surface);
@@ -150,7 +155,9 @@ class GnomonRunner final : public Runner {
   }
 
   static void draw_flat(raster::Frame& frame, const pipeline::PlacedObject& object,
-                        const raster::State& state) {
+                        raster::State state) {
+    state.front_face = object.front_face;
+    state.cull = cull(object);
     for (const auto& mesh : object.meshes) {
       frame.keep(mesh);
       frame.draw({.state = state,
@@ -168,6 +175,7 @@ class GnomonRunner final : public Runner {
     state.depth = raster::DepthState{};
     for (const auto& object :
          pipeline::place_objects(subject_.scene, subject_.camera, topologies_)) {
+      state.cull = cull(object);
       pipeline::draw_depth(out.frame, object, state);
     }
     return out;

@@ -42,6 +42,10 @@ std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
        .extrusion = {.kind = pipeline::Extrusion::Kind::infinite}});
 }
 
+bool shows_one_side(const pipeline::PlacedObject& object) {
+  return object.topology->faults.closed_manifold();
+}
+
 raster::MeshView counted(const pipeline::PlacedVolume& volume) {
   raster::MeshView view = volume.volume->view();
   if (volume.method == VolumeMethod::zpass) {

@@ -17,6 +17,9 @@ std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
                                                  std::span<const pipeline::PlacedObject> objects,
                                                  Method method);
 
+/// Its back faces can be culled: a closed surface that the eye is outside of.
+bool shows_one_side(const pipeline::PlacedObject& object);
+
 /// The triangles that the method needs: the sides alone for z-pass, the closed volume for z-fail.
 raster::MeshView counted(const pipeline::PlacedVolume& volume);
 
