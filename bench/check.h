@@ -13,11 +13,15 @@ namespace gnomon::bench {
 
 struct Checked {
   std::vector<Agreement> agreements;
-  /// The hashes of gnomon's colour, which all its methods and numbers of threads share.
-  std::string color_hash;
+  /// Hash of the first buffer (colour) of gnomon's plain methods, which all numbers of threads
+  /// share.
+  std::string hash;
 };
 
-/// Draws a frame in every worker and compares. Throws std::runtime_error that names what differs.
+/// Draws a frame in every worker and compares. z-pass and z-fail on infinite volumes must give the
+/// same bytes of colour; the automatic method may move an outline by a rounding, because it ends
+/// volumes where a vertex snaps elsewhere than on the way to infinity, and is held to the bound
+/// that other systems are. Throws std::runtime_error that names what differs.
 Checked check(const Subject& subject, const std::vector<std::unique_ptr<Worker>>& workers);
 
 }  // namespace gnomon::bench

@@ -139,10 +139,15 @@ class GlRunner final : public Runner {
     if (subject_.kind == Kind::layer) return out;
     std::vector<std::uint32_t> depth(out.size());
     glReadPixels(0, 0, width, height, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, depth.data());
+    if (subject_.kind == Kind::depth) {
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i] = static_cast<std::uint8_t>(depth[i] >> 24);
+      }
+      return out;
+    }
     for (std::size_t i = 0; i < out.size(); ++i) {
       const bool seen = depth[i] >> 8 != 0xffffff;
-      const int shadowed = subject_.kind == Kind::shadows && out[i] != 0 ? 1 : 0;
-      out[i] = static_cast<std::uint8_t>(seen ? 1 + shadowed : 0);
+      out[i] = static_cast<std::uint8_t>(seen ? (out[i] != 0 ? 2 : 1) : 0);
     }
     return out;
   }

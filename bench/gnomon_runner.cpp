@@ -73,10 +73,15 @@ class GnomonRunner final : public Runner {
     Picture out = buffers_.stencil.to_rows();
     if (subject_.kind == Kind::layer) return out;
     const std::vector<std::uint32_t> depth = buffers_.depth.to_rows();
+    if (subject_.kind == Kind::depth) {
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i] = static_cast<std::uint8_t>(depth[i] >> 16);
+      }
+      return out;
+    }
     for (std::size_t i = 0; i < out.size(); ++i) {
       const bool seen = depth[i] != buffers_.depth.max_value();
-      const int shadowed = subject_.kind == Kind::shadows && out[i] != 0 ? 1 : 0;
-      out[i] = static_cast<std::uint8_t>(seen ? 1 + shadowed : 0);
+      out[i] = static_cast<std::uint8_t>(seen ? (out[i] != 0 ? 2 : 1) : 0);
     }
     return out;
   }
@@ -97,10 +102,13 @@ class GnomonRunner final : public Runner {
   }
 
  private:
-  static std::vector<std::string> hashes_of(const Buffers& buffers) {
-    return {sentence(golden::hash_of(raster::Buffer(buffers.color))),
-            sentence(golden::hash_of(raster::Buffer(buffers.depth))),
-            sentence(golden::hash_of(raster::Buffer(buffers.stencil)))};
+  /// Of what the subject draws, what a person sees first.
+  std::vector<std::string> hashes_of(const Buffers& buffers) const {
+    const std::string depth = sentence(golden::hash_of(raster::Buffer(buffers.depth)));
+    if (subject_.kind == Kind::depth) return {depth};
+    const std::string stencil = sentence(golden::hash_of(raster::Buffer(buffers.stencil)));
+    if (subject_.kind == Kind::layer) return {stencil, depth};
+    return {sentence(golden::hash_of(raster::Buffer(buffers.color))), depth, stencil};
   }
 
   void load_random_depth(raster::DepthBuffer& depth) const {

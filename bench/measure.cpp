@@ -130,8 +130,8 @@ void measure_place(Report& report, const Place& place, const Options& options) {
   const Checked checked = check(subject, workers);
   report.agreements.insert(report.agreements.end(), checked.agreements.begin(),
                            checked.agreements.end());
-  if (!checked.color_hash.empty()) {
-    report.hashes.push_back(place.subject + " " + text(place.size) + ": " + checked.color_hash);
+  if (!checked.hash.empty()) {
+    report.hashes.push_back(place.subject + " " + text(place.size) + ": " + checked.hash);
   }
   for (const Agreement& a : checked.agreements) {
     fmt::print(stderr, "  {} {}: {} of {} pixels differ; shadow {:.3f} %, gnomon's {:.3f} %\n",

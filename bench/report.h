@@ -30,9 +30,9 @@ struct Agreement {
   Size size;
   System system = System::llvmpipe;
   Method method = Method::zfail;
-  /// Pixels that are in shadow in one picture only, of all.
+  /// Pixels that are in shadow in one picture only (of depth or a layer: that hold another value).
   std::size_t differing = 0, pixels = 0;
-  /// Parts of the picture in shadow.
+  /// Parts of the picture in shadow (nearer than the far plane; counted).
   double gnomon_share = 0.0, share = 0.0;
 };
 

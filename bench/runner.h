@@ -41,7 +41,7 @@ inline std::optional<double>& at(StageTimes& times, Stage stage) {
 }
 
 /// A byte a pixel, rows from the bottom one. Of a scene with shadows: 0 nothing is seen, 1 what is
-/// seen is lit, 2 it is in shadow. Of depth only: 0 or 1. Of a layer: the stencil.
+/// seen is lit, 2 it is in shadow. Of depth only: its upper 8 bits. Of a layer: the stencil.
 using Picture = std::vector<std::uint8_t>;
 
 class Runner {
