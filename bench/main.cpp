@@ -11,7 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "ar/file.h"
+#include "bench/growth.h"
 #include "bench/measure.h"
+#include "bench/plot.h"
 #include "bench/worker.h"
 
 namespace gnomon::bench {
@@ -20,7 +22,8 @@ namespace {
 struct Arguments {
   Options options;
   std::vector<std::string> sizes, systems;
-  std::string json, markdown;
+  GrowthOptions growth;
+  std::string json, markdown, svg;
   bool quick = false, list = false;
   /// Of the hidden subcommand that is one worker.
   std::string subject, size, system, method;
@@ -40,11 +43,11 @@ void add_run(CLI::App& program, Arguments& arguments) {
       .add_option("--system", arguments.systems,
                   "gnomon, llvmpipe, softpipe, embree; all without it")
       ->type_name("NAME");
-  program.add_option("--frames", options.frames, "Frames that a median is taken of (20)")
+  program.add_option("--frames", options.turns.frames, "Frames that a median is taken of (20)")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
   program
-      .add_option("--cap", options.cap_s,
+      .add_option("--cap", options.turns.cap_s,
                   "Seconds after which one system's frames of one scene are enough (20)")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.0, 1e6));
@@ -56,6 +59,26 @@ void add_run(CLI::App& program, Arguments& arguments) {
   program.add_flag("--quick", arguments.quick,
                    "Small pictures and few frames: do all systems agree?");
   program.add_flag("--list", arguments.list, "Name the scenes and stop");
+}
+
+CLI::App* add_growth(CLI::App& program, Arguments& arguments) {
+  CLI::App* growth =
+      program.add_subcommand("growth", "Time and memory against triangles and against pixels");
+  GrowthOptions& options = arguments.growth;
+  growth->add_option("--threads", options.threads, "Number of threads (2)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 256));
+  growth->add_option("--frames", options.turns.frames, "Frames that a median is taken of (7)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000));
+  growth->add_option("--most-triangles", options.most_triangles, "Leave out what has more")
+      ->type_name("N");
+  growth->add_option("--most-pixels", options.most_pixels, "Leave out what has more")
+      ->type_name("N");
+  growth->add_option("--json", arguments.json, "Write every point to this file")->type_name("FILE");
+  growth->add_option("--svg", arguments.svg, "Draw the curves into this file")->type_name("FILE");
+  growth->footer("Example:\n  gnomon_bench growth --svg growth.svg --most-triangles 1000000");
+  return growth;
 }
 
 CLI::App* add_worker(CLI::App& program, Arguments& arguments) {
@@ -93,13 +116,22 @@ int run(Arguments& arguments) {
     options.systems.push_back(system_named(system));
   }
   if (arguments.quick) {
-    options.frames = 2;
+    options.turns.frames = 2;
     if (options.sizes.empty()) options.sizes = {{160, 120}};
   }
   const Report report = measure(options);
   std::cout << table(report.rows) << std::flush;
   if (!arguments.json.empty()) ar::write_file(arguments.json, to_json(report).dump(1) + "\n");
   if (!arguments.markdown.empty()) ar::write_file(arguments.markdown, markdown(report));
+  return std::cout ? 0 : 1;
+}
+
+int run_growth(const Arguments& arguments) {
+  const Report now = report_of_now();
+  const Growth growth = measure_growth(arguments.growth);
+  std::cout << table(growth) << std::flush;
+  if (!arguments.json.empty()) ar::write_file(arguments.json, to_json(growth, now).dump(1) + "\n");
+  if (!arguments.svg.empty()) ar::write_file(arguments.svg, plot_svg(growth));
   return std::cout ? 0 : 1;
 }
 
@@ -111,11 +143,13 @@ int start(int argc, char** argv) {
       "  gnomon_bench                                     everything, which takes a while\n"
       "  gnomon_bench --scene tori-12 --size 640x480      one scene at one size\n"
       "  gnomon_bench --scene tori-12 --scene tori-64 --json bench.json\n"
+      "  gnomon_bench growth --svg growth.svg             time against triangles and pixels\n"
       "  gnomon_bench --quick                             checks pictures, measures little\n"
       "What stages and methods mean: docs/performance.md");
   Arguments arguments;
   add_run(program, arguments);
-  CLI::App* worker = add_worker(program, arguments);
+  const CLI::App* growth = add_growth(program, arguments);
+  const CLI::App* worker = add_worker(program, arguments);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -129,6 +163,7 @@ int start(int argc, char** argv) {
         arguments.subject, size_from(arguments.size), arguments.options.models,
         {system_named(arguments.system), method_named(arguments.method), arguments.worker_threads});
   }
+  if (growth->parsed()) return run_growth(arguments);
   if (arguments.list) {
     list_subjects();
     return 0;

@@ -10,17 +10,11 @@
 #include <fmt/format.h>
 
 #include "bench/check.h"
-#include "bench/statistics.h"
-#include "bench/timer.h"
+#include "bench/turns.h"
 #include "bench/worker.h"
 
 namespace gnomon::bench {
 namespace {
-
-constexpr int kFewestFrames = 3;
-/// A frame this short is drawn once more just before it is timed, so that every system finds its
-/// own data in the caches after another one's turn.
-constexpr double kShort_ms = 50.0;
 
 struct Place {
   std::string subject;
@@ -80,37 +74,19 @@ std::vector<Task> tasks_of(const Options& options, Kind kind) {
   return tasks;
 }
 
-/// The times of one worker, by stage.
-struct Series {
-  std::array<std::vector<double>, kStages.size()> times;
-  int frames = 0;
-  double spent_s = 0.0, last_ms = 0.0;
-};
-
-void time_once(Worker& worker, Series& series) {
-  Timer timer;
-  if (series.last_ms < kShort_ms) worker.frame();
-  const StageTimes times = worker.frame();
-  series.spent_s += timer.lap_ms() / 1000.0;
-  for (std::size_t stage = 0; stage < times.size(); ++stage) {
-    if (times[stage]) series.times[stage].push_back(*times[stage]);
-  }
-  series.last_ms = times.back().value_or(0.0);
-  ++series.frames;
-}
-
 void add_rows(Report& report, const Place& place, const Task& task, const Series& series,
               int wanted) {
+  const StageTimes medians = series.medians();
   for (const Stage stage : kStages) {
-    const auto& times = series.times[static_cast<std::size_t>(stage)];
-    if (times.empty()) continue;
+    const std::optional<double> ms = medians[static_cast<std::size_t>(stage)];
+    if (!ms) continue;
     report.rows.push_back({.scene = place.subject,
                            .size = place.size,
                            .threads = task.threads,
                            .method = task.method,
                            .stage = stage,
                            .system = task.system,
-                           .median_ms = median(times),
+                           .median_ms = *ms,
                            .ratio_to_gnomon = {}});
   }
   if (series.frames < wanted) {
@@ -138,16 +114,9 @@ void measure_place(Report& report, const Place& place, const Options& options) {
                name(a.system), name(a.method), a.differing, a.pixels, 100.0 * a.share,
                100.0 * a.gnomon_share);
   }
-  std::vector<Series> series(workers.size());
-  for (auto& worker : workers) worker->frame();
-  for (int frame = 0; frame < options.frames; ++frame) {
-    for (std::size_t i = 0; i < workers.size(); ++i) {
-      if (series[i].spent_s > options.cap_s && series[i].frames >= kFewestFrames) continue;
-      time_once(*workers[i], series[i]);
-    }
-  }
+  const std::vector<Series> series = take_turns(workers, options.turns);
   for (std::size_t i = 0; i < workers.size(); ++i) {
-    add_rows(report, place, tasks[i], series[i], options.frames);
+    add_rows(report, place, tasks[i], series[i], options.turns.frames);
   }
 }
 

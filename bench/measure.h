@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/report.h"
+#include "bench/turns.h"
 
 namespace gnomon::bench {
 
@@ -16,9 +17,7 @@ struct Options {
   std::vector<Size> sizes;
   std::vector<int> threads{1, 2};
   std::vector<System> systems{kSystems.begin(), kSystems.end()};
-  int frames = 20;
-  /// A series that has taken so long ends early, after no less than three frames.
-  double cap_s = 20.0;
+  TurnOptions turns;
   std::vector<std::filesystem::path> models;
 };
 

@@ -68,8 +68,9 @@ int serve(const std::string& subject, Size size, std::span<const std::filesystem
           const Task& task) {
   keep_freed_memory();
   try {
-    const std::unique_ptr<Runner> runner = make_runner(make_subject(subject, size, models), task);
+    const Subject loaded_subject = make_subject(subject, size, models);
     const std::size_t loaded = resident_bytes();
+    const std::unique_ptr<Runner> runner = make_runner(loaded_subject, task);
     for (std::string question; std::getline(std::cin, question);) {
       if (question == "frame") {
         std::cout << "ok " << answer_frame(*runner) << std::endl;

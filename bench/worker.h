@@ -19,7 +19,8 @@ namespace gnomon::bench {
 
 /// Resident memory of a worker's process, in bytes.
 struct Memory {
-  /// With the scene loaded, before the first frame; and the most there ever was.
+  /// With the scene loaded, before the system has buffers or trees of its own; and the most there
+  /// ever was.
   std::size_t loaded = 0, peak = 0;
 };
 
