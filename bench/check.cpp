@@ -33,6 +33,8 @@ double share(Kind kind, const Picture& picture) {
   return static_cast<double>(count) / static_cast<double>(picture.size());
 }
 
+}  // namespace
+
 Agreement compare(const Subject& subject, const Task& task, const Picture& own,
                   const Picture& other) {
   if (own.size() != other.size()) throw std::runtime_error("pictures of different sizes");
@@ -55,14 +57,11 @@ void require_agreement(const Agreement& a) {
     return;
   }
   throw std::runtime_error(
-      fmt::format("{} {}: {} of {} pixels are in shadow for gnomon or for {} ({}) only; {:.3f} % "
-                  "and {:.3f} % are "
-                  "in shadow",
+      fmt::format("{} {}: {} of {} pixels differ between gnomon and {} ({}); {:.3f} % of gnomon's "
+                  "are in shadow and {:.3f} % of the other's",
                   a.scene, text(a.size), a.differing, a.pixels, name(a.system), name(a.method),
                   100.0 * a.gnomon_share, 100.0 * a.share));
 }
-
-}  // namespace
 
 namespace {
 

@@ -18,6 +18,13 @@ struct Checked {
   std::string hash;
 };
 
+/// What two pictures of a subject have in common. Throws std::runtime_error for different sizes.
+Agreement compare(const Subject& subject, const Task& task, const Picture& own,
+                  const Picture& other);
+
+/// Throws std::runtime_error, with the figures, when more pixels differ than outlines explain.
+void require_agreement(const Agreement& agreement);
+
 /// Draws a frame in every worker and compares. z-pass and z-fail on infinite volumes must give the
 /// same bytes of colour; the automatic method may move an outline by a rounding, because it ends
 /// volumes where a vertex snaps elsewhere than on the way to infinity, and is held to the bound

@@ -9,8 +9,8 @@
 namespace gnomon::bench {
 namespace {
 
-constexpr double kPanel = 520.0, kHeight = 430.0, kLeft = 62.0, kRight = 12.0, kTop = 34.0,
-                 kBottom = 150.0;
+constexpr double kPanel = 520.0, kHeight = 400.0, kLeft = 62.0, kRight = 24.0, kTop = 34.0,
+                 kBottom = 120.0;
 constexpr std::size_t kLast = 4;
 
 struct Line {
