@@ -42,6 +42,7 @@ Agreement compare(const Subject& subject, const Task& task, const Picture& own,
                 .size = subject.size,
                 .system = task.system,
                 .method = task.method,
+                .threads = task.threads,
                 .pixels = own.size(),
                 .gnomon_share = share(subject.kind, own),
                 .share = share(subject.kind, other)};

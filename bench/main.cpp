@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ar/file.h"
+#include "bench/goals.h"
 #include "bench/growth.h"
 #include "bench/measure.h"
 #include "bench/plot.h"
@@ -120,7 +121,7 @@ int run(Arguments& arguments) {
     if (options.sizes.empty()) options.sizes = {{160, 120}};
   }
   const Report report = measure(options);
-  std::cout << table(report.rows) << std::flush;
+  std::cout << table(report.rows) << '\n' << text(goals(report.rows)) << std::flush;
   if (!arguments.json.empty()) ar::write_file(arguments.json, to_json(report).dump(1) + "\n");
   if (!arguments.markdown.empty()) ar::write_file(arguments.markdown, markdown(report));
   return std::cout ? 0 : 1;

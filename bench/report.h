@@ -30,6 +30,7 @@ struct Agreement {
   Size size;
   System system = System::llvmpipe;
   Method method = Method::zfail;
+  int threads = 1;
   /// Pixels that are in shadow in one picture only (of depth or a layer: that hold another value).
   std::size_t differing = 0, pixels = 0;
   /// Parts of the picture in shadow (nearer than the far plane; counted).
@@ -48,6 +49,13 @@ struct Report {
   std::vector<std::string> notes;
 };
 
+/// Of one scene, size and number of threads.
+bool same_place(const Row& a, const Row& b);
+
+/// The row at the place of another one; null if there is none.
+const Row* find(const std::vector<Row>& rows, const Row& place, System system, Method method,
+                Stage stage);
+
 /// Adds a row "auto" for a peer that has several methods: those of its faster one, by its whole
 /// frame. Then sets every ratio.
 void complete(std::vector<Row>& rows);
@@ -57,7 +65,7 @@ nlohmann::json to_json(const Report& report);
 /// Fixed-width columns for a terminal: a line a system, method and number of threads.
 std::string table(const std::vector<Row>& rows);
 
-/// The same as Markdown.
+/// For docs/performance.md: the goals, and whole frames and volumes with the systems side by side.
 std::string markdown(const Report& report);
 
 }  // namespace gnomon::bench

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/goals.h"
+
 namespace gnomon::bench {
 namespace {
 
@@ -104,14 +106,30 @@ TEST(Table, HasALineASystemMethodAndNumberOfThreads) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 1 + 1 + 7);
 }
 
-TEST(Markdown, HasARowASeriesUnderDateProcessorAndCommit) {
+TEST(Goals, AreTheRatiosOfTheRowsThatAreThere) {
+  std::vector<Row> rows = some_rows();
+  complete(rows);
+  const std::vector<Goal> found = goals(rows);
+  // Frames of tori-12 on 2 threads: llvmpipe's faster method by 10 and rays by 4; no volumes.
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].what, "tori-12 640x480, frame: llvmpipe auto / gnomon auto");
+  EXPECT_EQ(found[0].asked, ">= 8");
+  EXPECT_EQ(found[0].measured, "10.00");
+  EXPECT_TRUE(found[0].met);
+  EXPECT_TRUE(found[1].met);
+  rows[2].median_ms = 2.1;
+  complete(rows);
+  EXPECT_FALSE(goals(rows)[1].met);
+}
+
+TEST(Markdown, HasARowAPlaceUnderDateProcessorAndCommit) {
   Report report{
       .date = "2026-01-31", .processor = "a processor", .commit = "abc", .rows = some_rows()};
   complete(report.rows);
   const std::string text = markdown(report);
   EXPECT_THAT(text, HasSubstr("2026-01-31; a processor; commit abc"));
-  EXPECT_THAT(text,
-              HasSubstr("| tori-12 | 640x480 | 2 | embree | rays | - | - | - | 8.00 (4.0x) |"));
+  EXPECT_THAT(text, HasSubstr("| tori-12 | 640x480 | 2 | 2.00 | 4.00 | 5.00 | 20.00 (5.0x) | "
+                              "30.00 (6.0x) | - | 8.00 (4.0x) |"));
 }
 
 }  // namespace
