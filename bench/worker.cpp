@@ -97,7 +97,11 @@ Worker::Worker(const std::string& subject, Size size, std::span<const std::files
   close(answers.write);
   to_ = fdopen(questions.write, "w");
   from_ = fdopen(answers.read, "r");
-  if (error != 0) throw std::runtime_error(what_ + ": its process cannot be started");
+  if (error != 0) {
+    std::fclose(to_);
+    std::fclose(from_);
+    throw std::runtime_error(what_ + ": its process cannot be started");
+  }
 }
 
 Worker::~Worker() {
