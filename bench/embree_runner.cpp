@@ -86,9 +86,10 @@ class EmbreeRunner final : public Runner {
     arena_.execute([&] {
       Timer timer;
       build();
-      for_tiles([this](std::size_t index, int x, int y) {
-        trace(packets_[index], x, y);
-        shade(packets_[index], x, y);
+      for_tiles([this](std::size_t, int x, int y) {
+        Packet packet;
+        trace(packet, x, y);
+        shade(packet, x, y);
       });
       at(times, Stage::frame) = timer.lap_ms();
       build();
@@ -240,6 +241,7 @@ class EmbreeRunner final : public Runner {
   oneapi::tbb::global_control limit_;
   oneapi::tbb::task_arena arena_;
   int columns_, rows_;
+  /// Handed from one stage to the next where stages are timed apart.
   std::vector<Packet> packets_;
   Picture picture_;
   RTCDevice device_ = nullptr;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -38,29 +39,50 @@ std::vector<Task> tasks(int threads) {
           {System::embree, Method::rays, threads}};
 }
 
-void add_points(std::vector<Curve>& curves, const std::string& name, Size size, bool by_triangles,
-                const GrowthOptions& options) {
-  fmt::print(stderr, "{} {}\n", name, text(size));
-  const Subject subject = make_subject(name, size);
+/// One x and what was measured there so far, a series and a memory a task.
+struct Step {
+  std::string subject;
+  Size size;
+  double x = 0.0;
+  std::vector<Series> series{};
+  std::vector<double> memory_mib{};
+};
+
+void measure_step(Step& step, const GrowthOptions& options, bool first_round) {
+  fmt::print(stderr, "{} {}\n", step.subject, text(step.size));
+  const std::vector<Task> all = tasks(options.threads);
   std::vector<std::unique_ptr<Worker>> workers;
-  for (const Task& task : tasks(options.threads)) {
-    workers.push_back(
-        std::make_unique<Worker>(name, size, std::span<const std::filesystem::path>{}, task));
+  for (const Task& task : all) {
+    workers.push_back(std::make_unique<Worker>(step.subject, step.size,
+                                               std::span<const std::filesystem::path>{}, task));
   }
-  // Before the check, which draws with a second set of buffers.
   const std::vector<Series> series = take_turns(workers, options.turns);
-  std::vector<Memory> memory;
-  for (const auto& worker : workers) memory.push_back(worker->memory());
-  check(subject, workers);
-  curves.resize(workers.size());
-  for (std::size_t i = 0; i < workers.size(); ++i) {
-    curves[i].system = workers[i]->task().system;
-    curves[i].method = workers[i]->task().method;
-    curves[i].points.push_back(
-        {.x = by_triangles ? triangles(subject.scene) : pixels(size),
-         .ms = series[i].medians(),
-         .memory_mib = static_cast<double>(memory[i].peak - memory[i].loaded) / (1024.0 * 1024.0)});
+  step.series.resize(all.size());
+  step.memory_mib.resize(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    step.series[i].append(series[i]);
+    // Before the check, which draws into a second set of buffers.
+    const Memory memory = workers[i]->memory();
+    step.memory_mib[i] = std::max(
+        step.memory_mib[i], static_cast<double>(memory.peak - memory.loaded) / (1024.0 * 1024.0));
   }
+  if (first_round) check(make_subject(step.subject, step.size), workers);
+}
+
+std::vector<Curve> measure_steps(std::vector<Step> steps, const GrowthOptions& options) {
+  for (int round = 0; round < options.rounds; ++round) {
+    for (Step& step : steps) measure_step(step, options, round == 0);
+  }
+  std::vector<Curve> curves;
+  for (const Task& task : tasks(options.threads)) {
+    const std::size_t i = curves.size();
+    curves.push_back({.system = task.system, .method = task.method, .points = {}});
+    for (const Step& step : steps) {
+      curves.back().points.push_back(
+          {.x = step.x, .ms = step.series[i].medians(), .memory_mib = step.memory_mib[i]});
+    }
+  }
+  return curves;
 }
 
 nlohmann::json to_json(const std::vector<Curve>& curves, const char* x) {
@@ -128,18 +150,20 @@ std::optional<double> Curve::slope(Stage stage, std::size_t last) const {
 }
 
 Growth measure_growth(const GrowthOptions& options) {
-  Growth growth;
+  std::vector<Step> by_triangles, by_pixels;
   for (const int count : kTriangles) {
-    if (count <= options.most_triangles) {
-      add_points(growth.by_triangles, "grid-" + std::to_string(count), {640, 480}, true, options);
-    }
+    if (count > options.most_triangles) continue;
+    const std::string subject = "grid-" + std::to_string(count);
+    by_triangles.push_back({.subject = subject,
+                            .size = kSizes[0],
+                            .x = triangles(make_subject(subject, kSizes[0]).scene)});
   }
   for (const Size size : kSizes) {
-    if (pixels(size) <= options.most_pixels) {
-      add_points(growth.by_pixels, "tori-12", size, false, options);
-    }
+    if (pixels(size) > options.most_pixels) continue;
+    by_pixels.push_back({.subject = "tori-12", .size = size, .x = pixels(size)});
   }
-  return growth;
+  return {measure_steps(std::move(by_triangles), options),
+          measure_steps(std::move(by_pixels), options)};
 }
 
 nlohmann::json to_json(const Growth& growth, const Report& now) {

@@ -13,7 +13,10 @@
 namespace gnomon::bench {
 
 struct GrowthOptions {
-  TurnOptions turns{.frames = 7, .cap_s = 15.0};
+  /// Of one round at one x.
+  TurnOptions turns{.frames = 3, .cap_s = 10.0};
+  /// All of x is gone through so often: a busy minute does not bend the curves at one place.
+  int rounds = 3;
   int threads = 2;
   /// Larger steps are left out.
   double most_triangles = 1e7, most_pixels = 7680.0 * 4320.0;

@@ -69,7 +69,10 @@ CLI::App* add_growth(CLI::App& program, Arguments& arguments) {
   growth->add_option("--threads", options.threads, "Number of threads (2)")
       ->type_name("N")
       ->check(CLI::Range(1, 256));
-  growth->add_option("--frames", options.turns.frames, "Frames that a median is taken of (7)")
+  growth->add_option("--rounds", options.rounds, "How often all steps are gone through (3)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  growth->add_option("--frames", options.turns.frames, "Frames of a step in a round (3)")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
   growth->add_option("--most-triangles", options.most_triangles, "Leave out what has more")

@@ -11,6 +11,13 @@ constexpr double kShort_ms = 50.0;
 
 }  // namespace
 
+void Series::append(const Series& other) {
+  for (std::size_t stage = 0; stage < times.size(); ++stage) {
+    times[stage].insert(times[stage].end(), other.times[stage].begin(), other.times[stage].end());
+  }
+  frames += other.frames;
+}
+
 StageTimes Series::medians() const {
   StageTimes out;
   for (std::size_t stage = 0; stage < times.size(); ++stage) {

@@ -22,6 +22,7 @@ struct Series {
   std::array<std::vector<double>, kStages.size()> times;
   int frames = 0;
 
+  void append(const Series& other);
   /// Medians; absent where there is no such stage.
   StageTimes medians() const;
 };

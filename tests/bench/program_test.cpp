@@ -83,7 +83,7 @@ TEST_F(BenchProgram, LayersAndMapsAreCountedAlike) {
 
 TEST_F(BenchProgram, GrowthIsWrittenAsFiguresAndAsAPicture) {
   const fs::path picture = folder_ / "growth.svg";
-  ASSERT_EQ(run("growth --frames 1 --most-triangles 3000 --most-pixels 307200 --json '" +
+  ASSERT_EQ(run("growth --rounds 1 --frames 1 --most-triangles 3000 --most-pixels 307200 --json '" +
                 file_.string() + "' --svg '" + picture.string() + "'"),
             0)
       << errors_;
