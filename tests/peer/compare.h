@@ -7,7 +7,7 @@
 #include <string>
 
 #include "case.h"
-#include "osmesa_context.h"
+#include "peer/osmesa/osmesa_context.h"
 
 namespace gnomon::peer {
 

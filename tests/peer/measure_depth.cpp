@@ -18,7 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include "depth_batches.h"
-#include "osmesa_context.h"
+#include "peer/osmesa/osmesa_context.h"
 #include "replay.h"
 
 namespace gnomon::peer {

@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "osmesa_context.h"
+#include "peer/osmesa/osmesa_context.h"
 #include "raster/frame.h"
 
 namespace gnomon::peer {

@@ -6,7 +6,7 @@
 
 #include "compare.h"
 #include "explain.h"
-#include "osmesa_context.h"
+#include "peer/osmesa/osmesa_context.h"
 #include "raster/execute.h"
 #include "replay.h"
 

@@ -12,7 +12,7 @@
 #include "cases.h"
 #include "compare.h"
 #include "explain_draw.h"
-#include "osmesa_context.h"
+#include "peer/osmesa/osmesa_context.h"
 
 namespace gnomon::peer {
 

@@ -1,4 +1,4 @@
-#include "osmesa_context.h"
+#include "peer/osmesa/osmesa_context.h"
 
 #include <array>
 #include <cstdlib>

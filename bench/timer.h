@@ -1,0 +1,22 @@
+// A monotonic stopwatch.
+#pragma once
+
+#include <chrono>
+
+namespace gnomon::bench {
+
+class Timer {
+ public:
+  /// Milliseconds since the start or the last lap.
+  double lap_ms() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace gnomon::bench
