@@ -106,6 +106,19 @@ enum class Cover { none, in_32_bits, in_64_bits };
 /// was rounded in a cut (raster/clip.h) can lie farther out.
 Cover cross_tile(const SetupTriangle& triangle, int x0, int y0, TileEdges& edges) {
   constexpr std::int64_t kSteepest = std::int64_t{1} << 25;
+  if (triangle.small) {
+    // Steps are below 2^13 and the tile's first pixel is nearer than 2^15: sums fit 32 bits.
+    edges.count = 3;
+    for (int k = 0; k < 3; ++k) {
+      const Edge edge = triangle.edge(k);
+      const std::int32_t value =
+          edge.a * (x0 * 256 + 128 - edge.x0) + edge.b * (y0 * 256 + 128 - edge.y0) - edge.bias();
+      edges.value[k] = value >> 8;
+      edges.step_x[k] = edge.a;
+      edges.step_y[k] = edge.b;
+    }
+    return Cover::in_32_bits;
+  }
   Cover cover = Cover::in_32_bits;
   for (int k = 0; k < 3; ++k) {
     const TileEdge edge = edge_at_tile(triangle, k, x0, y0);
@@ -366,30 +379,39 @@ BlockMask DrawInTile::cover_blocks(const SetupTriangle& triangle, const TileEdge
 void DrawInTile::color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
                               BlockMask blocks, const PixelMask* passed) const {
   const Draw& draw = *setup_.draw;
+  if (!blocks) return;
   if (fragments_.constant) {
     for_each_block_of(blocks,
                       [&](std::size_t b) { writer_->write(b, passed[b], *fragments_.constant); });
     return;
   }
   const bool in_vectors = fragments_.shading && kernels_.shade_block;
-  BlockShading shading;
-  if (in_vectors && blocks)
-    shading = make_triangle_shading(draw, *fragments_.shading, triangle, pieces);
+  TileShading shading;
+  if (in_vectors)
+    shading = make_tile_shading(draw, *fragments_.shading, triangle, pieces, x0_, y0_);
+  if (in_vectors && writer_->plain_rgba8()) {
+    kernels_.shade_and_store(shading, blocks, passed, writer_->plain_rgba8());
+    return;
+  }
   for_each_block_of(blocks, [&](std::size_t b) {
-    const int x = x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize;
-    const int y = y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize;
     ColorPlanes colors;
-    if (in_vectors) {
-      set_block(triangle, x, y, shading);
-      kernels_.shade_block(shading, passed[b], colors.data());
-    } else {
-      for_each_pixel(passed[b], [&](std::size_t i) {
-        const int px = x + static_cast<int>(i) % kBlockSize,
-                  py = y + static_cast<int>(i) / kBlockSize;
-        set_color(colors, i, shade(draw.shading, interpolate(draw, triangle, pieces, px, py)));
-      });
-    }
+    if (in_vectors)
+      kernels_.shade_block(shading, b, passed[b], colors.data());
+    else
+      shade_pixels(triangle, pieces, b, passed[b], colors);
     writer_->write(b, passed[b], colors);
+  });
+}
+
+/// The colours of block b pixel by pixel.
+void DrawInTile::shade_pixels(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
+                              std::size_t b, PixelMask pixels, ColorPlanes& colors) const {
+  const Draw& draw = *setup_.draw;
+  const int x = x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize;
+  const int y = y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize;
+  for_each_pixel(pixels, [&](std::size_t i) {
+    const int px = x + static_cast<int>(i) % kBlockSize, py = y + static_cast<int>(i) / kBlockSize;
+    set_color(colors, i, shade(draw.shading, interpolate(draw, triangle, pieces, px, py)));
   });
 }
 

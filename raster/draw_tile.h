@@ -4,11 +4,11 @@
 
 #include <optional>
 
-#include "raster/block_shading.h"
 #include "raster/frame.h"
 #include "raster/geometry.h"
 #include "raster/kernels.h"
 #include "raster/tile_pixels.h"
+#include "raster/tile_shading.h"
 #include "raster/write_color.h"
 
 namespace gnomon::raster {
@@ -69,6 +69,8 @@ class DrawInTile {
   BlockMask blocks_with_stencil(const FaceSetup& face);
   void color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
                     BlockMask blocks, const PixelMask* passed) const;
+  void shade_pixels(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
+                    std::size_t b, PixelMask pixels, ColorPlanes& colors) const;
 
   const DrawSetup& setup_;
   const FragmentSetup& fragments_;

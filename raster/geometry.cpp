@@ -101,6 +101,8 @@ bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVe
   const State& state = setup.draw->state;
   out.front_facing = (area > 0) == (state.front_face == FrontFace::ccw);
   if (culled(state.cull, out.front_facing)) return false;
+  out.small =
+      x_max - x_min < SetupTriangle::kSmall * 256 && y_max - y_min < SetupTriangle::kSmall * 256;
   out.swapped = area < 0;
   out.area = std::abs(area);
   const ProjectedVertex &second = out.swapped ? v2 : v1, &third = out.swapped ? v1 : v2;

@@ -43,6 +43,7 @@ struct Edge {
 
 /// A triangle ready for the tiles, its vertices counter-clockwise.
 struct SetupTriangle {
+  static constexpr int kSmall = 31;
   static constexpr std::uint32_t kWhole = 0xffffffff;
 
   std::array<SnappedVertex, 3> vertices;
@@ -57,6 +58,8 @@ struct SetupTriangle {
   /// Where its weights stand among the pieces; kWhole if it is the mesh's triangle.
   std::uint32_t piece = kWhole;
   bool front_facing = true;
+  /// Its vertices lie within kSmall x kSmall pixels.
+  bool small = false;
   /// Vertices 1 and 2 are the mesh's 2 and 1.
   bool swapped = false;
   /// 1/w of the vertices.

@@ -11,10 +11,10 @@ glm::vec3 vertex_weights(const SetupTriangle& triangle, std::span<const PieceWei
   const double area = static_cast<double>(triangle.area);
   std::array<double, 3> q;
   for (std::size_t k = 0; k < 3; ++k)
-    q[k] = static_cast<double>(triangle.edge(static_cast<int>(k)).at(x_fx, y_fx)) / area *
-           triangle.inverse_w[k];
-  const double sum = (q[0] + q[1]) + q[2];
-  const double w0 = q[0] / sum, w1 = q[1] / sum, w2 = q[2] / sum;
+    q[k] = static_cast<double>(triangle.edge(static_cast<int>(k)).at(x_fx, y_fx)) *
+           (triangle.inverse_w[k] / area);
+  const double inverse = 1.0 / ((q[0] + q[1]) + q[2]);
+  const double w0 = q[0] * inverse, w1 = q[1] * inverse, w2 = q[2] * inverse;
   if (triangle.piece == SetupTriangle::kWhole)
     return triangle.swapped ? glm::vec3(w0, w2, w1) : glm::vec3(w0, w1, w2);
   const PieceWeights& weights = pieces[triangle.piece];

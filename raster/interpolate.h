@@ -1,8 +1,8 @@
 // Perspective-correct attributes at a pixel centre.
-// Order of operations: barycentric weights E_k / area in double (E_k is an exact integer), each
-// times 1/w, divided by their sum; mapped to the mesh's triangle if it was clipped; rounded to
-// float32; attributes are (p0 a0 + p1 a1) + p2 a2 in float32; into the world a normal goes as
-// (m0 x + m1 y) + m2 z and a position as (m0 x + m1 y) + (m2 z + m3 w).
+// Order of operations: weights E_k * ((1/w_k) / area) in double (E_k is an exact integer), each
+// times the reciprocal of their sum (q_0 + q_1) + q_2; mapped to the mesh's triangle if it was
+// clipped; rounded to float32; attributes are (p0 a0 + p1 a1) + p2 a2 in float32; into the world a
+// normal goes as (m0 x + m1 y) + m2 z and a position as (m0 x + m1 y) + (m2 z + m3 w).
 #pragma once
 
 #include "raster/geometry.h"

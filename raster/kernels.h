@@ -84,12 +84,11 @@ struct TestedBlocks {
   std::uint8_t* stencil = nullptr;
 };
 
-/// A triangle's weights over a block: edges at the block's first pixel and their steps a pixel, all
-/// of them whole numbers below 2^53 (raster/interpolate.h).
-struct BlockWeights {
+/// A triangle's weights over a tile: edges at the tile's first pixel and their steps a pixel, all
+/// of them whole numbers below 2^53, and what they are multiplied by (raster/interpolate.h).
+struct TileWeights {
   double edge[3], step_x[3], step_y[3];
-  double area;
-  double inverse_w[3];
+  double scale[3];
   /// Weights of the mesh triangle's vertices are rows [vertex of the piece][vertex of the mesh];
   /// unless it is a piece, they are the three weights in this order.
   bool is_piece;
@@ -98,7 +97,7 @@ struct BlockWeights {
 };
 
 /// A light as the vector kernel wants it; names and units are those of raster::Light.
-struct BlockLight {
+struct LitLight {
   float position[4];
   float ambient[3], diffuse[3], specular[3];
   float attenuation[3];
@@ -108,7 +107,7 @@ struct BlockLight {
 };
 
 /// Lighting without textures and lookups (raster/shading.h), the same for all blocks of a draw.
-struct BlockLit {
+struct LitTerms {
   float material_ambient[3], material_diffuse[3], material_specular[3], material_emission[3];
   float material_alpha;
   int shininess;
@@ -119,14 +118,14 @@ struct BlockLit {
   bool world_matters;
   float scene_ambient[3], eye_world[3];
   float world_from_model[4][4], world_from_model_normal[3][3];
-  const BlockLight* lights;
+  const LitLight* lights;
   int light_count;
 };
 
-/// A triangle's colours over a block: lit, or `flat_color` times the mesh's colours.
-struct BlockShading {
-  BlockWeights weights;
-  const BlockLit* lit;
+/// A triangle's colours over a tile: lit, or `flat_color` times the mesh's colours.
+struct TileShading {
+  TileWeights weights;
+  const LitTerms* lit;
   float flat_color[4];
   /// Of the mesh triangle's three vertices.
   float normals[3][3], positions[3][4], colors[3][4];
@@ -178,9 +177,14 @@ struct Kernels {
   void (*blend_block)(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
                       const std::uint8_t* source, std::uint8_t* stored) noexcept;
 
-  /// Colours of the pixels of the mask, four planes of 64; other pixels' are not defined. Null in
-  /// plain C++: there shade() and interpolate() (raster/shading.h) do it, pixel by pixel.
-  void (*shade_block)(const BlockShading& shading, PixelMask mask, float* colors) noexcept;
+  /// Colours of the mask's pixels of block b, four planes of 64; other pixels' are not defined.
+  /// Null in plain C++: there shade() and interpolate() do it, pixel by pixel.
+  void (*shade_block)(const TileShading& shading, std::size_t b, PixelMask mask,
+                      float* colors) noexcept;
+
+  /// shade_block and store_colors for masks[b] of each block of a tile.
+  void (*shade_and_store)(const TileShading& shading, BlockMask blocks, const PixelMask* masks,
+                          std::uint8_t* stored) noexcept;
 
   /// Rounds the mask's pixels of 64 colours in four planes to RGBA8 (raster/unorm.h) and stores
   /// them; the others stay.

@@ -21,7 +21,7 @@
 #include "raster/count_blocks-inl.h"
 #include "raster/cover-inl.h"
 #include "raster/depth_ranges-inl.h"
-#include "raster/shade_block-inl.h"
+#include "raster/shade_blocks-inl.h"
 #include "raster/test_blocks-inl.h"
 #include "raster/transform-inl.h"
 
@@ -32,8 +32,8 @@ namespace HWY_NAMESPACE {
 const Kernels* kernels_of_this_target() {
   static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges, test_blocks,
                                     count_blocks, add_to_blocks, stencil_blocks, depth_range,
-                                    fill_block,   blend_block,   shade_block,    store_colors,
-                                    transform};
+                                    fill_block,   blend_block,   shade_block,    shade_and_store,
+                                    store_colors, transform};
   return &kKernels;
 }
 
@@ -48,8 +48,7 @@ namespace gnomon::raster {
 
 const Kernels* simd_kernels(Isa isa) {
   static const std::int64_t machine = hwy::SupportedTargets();
-  [[maybe_unused]] const auto if_machine_has = [](std::int64_t target,
-                                                         const Kernels* kernels) {
+  [[maybe_unused]] const auto if_machine_has = [](std::int64_t target, const Kernels* kernels) {
     return (machine & target) != 0 ? kernels : nullptr;
   };
   switch (isa) {

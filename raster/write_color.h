@@ -36,6 +36,9 @@ class BlockWriter {
   void write(std::size_t b, PixelMask mask, const Rgba8Block& colors) const;
 
   bool is_rgba8() const { return rgba8_ != nullptr; }
+  /// The tile's pixels, four bytes each, if what is written is rounded and stored and no more; else
+  /// null.
+  std::uint8_t* plain_rgba8() const { return plain_ && rgba8_ ? rgba8_->data() : nullptr; }
 
  private:
   const Kernels& kernels_;

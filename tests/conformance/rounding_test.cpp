@@ -152,12 +152,13 @@ TEST(Rounding, InterpolatedColorsAreSumsOfRoundedProducts) {
     for (int y = 0; y < kSize.height; ++y)
       for (int x = 0; x < kSize.width; ++x) {
         const glm::dvec2 p{x + 0.5, y + 0.5};
-        const std::array<double, 3> q{edge(1, 2, p) / area, edge(2, 0, p) / area,
-                                      edge(0, 1, p) / area};
+        const double scale = 1.0 / area;
+        const std::array<double, 3> q{edge(1, 2, p) * scale, edge(2, 0, p) * scale,
+                                      edge(0, 1, p) * scale};
         if (q[0] < 0 || q[1] < 0 || q[2] < 0) continue;
-        const double sum = (q[0] + q[1]) + q[2];
-        const auto w0 = static_cast<float>(q[0] / sum), w1 = static_cast<float>(q[1] / sum),
-                   w2 = static_cast<float>(q[2] / sum);
+        const double inverse = 1.0 / ((q[0] + q[1]) + q[2]);
+        const auto w0 = static_cast<float>(q[0] * inverse), w1 = static_cast<float>(q[1] * inverse),
+                   w2 = static_cast<float>(q[2] * inverse);
         for (int c = 0; c < 4; ++c) {
           const float first = plus(times(colors[0][c], w0), times(colors[1][c], w1));
           ASSERT_EQ(expected.only().color.rgba32f().at(x, y)[c],

@@ -194,10 +194,10 @@ glm::vec3 weights_at(const std::array<Vertex, 3>& v, std::int64_t area, std::int
                                     static_cast<double>(edge(v[0], v[1], cx, cy))};
   std::array<double, 3> q{};
   for (std::size_t i = 0; i < 3; ++i)
-    q[i] = share[i] / static_cast<double>(area) * (1.0 / v[i].clip.w);
-  const double sum = (q[0] + q[1]) + q[2];
-  return glm::vec3((v[0].weights * (q[0] / sum) + v[1].weights * (q[1] / sum)) +
-                   v[2].weights * (q[2] / sum));
+    q[i] = share[i] * ((1.0 / v[i].clip.w) / static_cast<double>(area));
+  const double inverse = 1.0 / ((q[0] + q[1]) + q[2]);
+  return glm::vec3((v[0].weights * (q[0] * inverse) + v[1].weights * (q[1] * inverse)) +
+                   v[2].weights * (q[2] * inverse));
 }
 
 void draw_triangle(const Draw& draw, const Target& target, std::array<Vertex, 3> v,

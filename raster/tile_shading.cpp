@@ -1,4 +1,4 @@
-#include "raster/block_shading.h"
+#include "raster/tile_shading.h"
 
 #include <cmath>
 
@@ -35,8 +35,8 @@ bool specular_matters(const Lit& lit) {
   return false;
 }
 
-BlockLight make_light(const Light& light) {
-  BlockLight out{};
+LitLight make_light(const Light& light) {
+  LitLight out{};
   copy(light.position, out.position);
   copy(light.ambient, out.ambient);
   copy(light.diffuse, out.diffuse);
@@ -48,8 +48,8 @@ BlockLight make_light(const Light& light) {
   return out;
 }
 
-BlockLit make_lit(const Lit& lit) {
-  BlockLit out{};
+LitTerms make_lit(const Lit& lit) {
+  LitTerms out{};
   copy(lit.material.ambient, out.material_ambient);
   copy(lit.material.diffuse, out.material_diffuse);
   copy(lit.material.specular, out.material_specular);
@@ -94,19 +94,21 @@ std::optional<DrawShading> make_draw_shading(const Draw& draw) {
   return shading;
 }
 
-BlockShading make_triangle_shading(const Draw& draw, const DrawShading& shading,
-                                   const SetupTriangle& triangle,
-                                   std::span<const PieceWeights> pieces) {
-  BlockShading out;
-  BlockWeights& weights = out.weights;
-  weights.area = static_cast<double>(triangle.area);
+TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
+                              const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
+                              int x, int y) {
+  TileShading out;
+  TileWeights& weights = out.weights;
+  const double area = static_cast<double>(triangle.area);
   weights.is_piece = triangle.piece != SetupTriangle::kWhole;
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const Edge edge = triangle.edge(k);
+    weights.edge[i] =
+        static_cast<double>(edge.at(x * std::int64_t{256} + 128, y * std::int64_t{256} + 128));
     weights.step_x[i] = 256.0 * edge.a;
     weights.step_y[i] = 256.0 * edge.b;
-    weights.inverse_w[i] = triangle.inverse_w[i];
+    weights.scale[i] = triangle.inverse_w[i] / area;
     weights.order[i] = triangle.swapped && k > 0 ? 3 - k : k;
     if (weights.is_piece)
       for (int v = 0; v < 3; ++v)
@@ -125,12 +127,6 @@ BlockShading make_triangle_shading(const Draw& draw, const DrawShading& shading,
     copy(mesh.positions[index], out.positions[v]);
   }
   return out;
-}
-
-void set_block(const SetupTriangle& triangle, int x, int y, BlockShading& shading) {
-  for (int k = 0; k < 3; ++k)
-    shading.weights.edge[k] = static_cast<double>(
-        triangle.edge(k).at(x * std::int64_t{256} + 128, y * std::int64_t{256} + 128));
 }
 
 }  // namespace gnomon::raster

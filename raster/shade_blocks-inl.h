@@ -1,11 +1,11 @@
 // Vector kernels: colours of a block's pixels. The same operations in the same order as
 // raster/interpolate.cpp and raster/shading.cpp, products and sums apart, each rounded once.
 // Read once for each instruction set, so its guard goes to and fro with Highway's.
-#if defined(GNOMON_RASTER_SHADE_BLOCK_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef GNOMON_RASTER_SHADE_BLOCK_INL_H
-#undef GNOMON_RASTER_SHADE_BLOCK_INL_H
+#if defined(GNOMON_RASTER_SHADE_BLOCKS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef GNOMON_RASTER_SHADE_BLOCKS_INL_H
+#undef GNOMON_RASTER_SHADE_BLOCKS_INL_H
 #else
-#define GNOMON_RASTER_SHADE_BLOCK_INL_H
+#define GNOMON_RASTER_SHADE_BLOCKS_INL_H
 #endif
 
 #include <hwy/highway.h>
@@ -46,12 +46,13 @@ HWY_INLINE Vector3 where(hn::Mask<DF32> mask, const Vector3& yes, const Vector3&
           hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// Zero stays zero.
-HWY_INLINE Vector3 normalized(const Vector3& v) {
-  const VF32 length = hn::Sqrt(dot3(v, v));
+/// v over its length; zero stays zero.
+HWY_INLINE Vector3 over_length(const Vector3& v, VF32 length) {
   const Vector3 unit{hn::Div(v.x, length), hn::Div(v.y, length), hn::Div(v.z, length)};
   return where(hn::Gt(length, hn::Zero(DF32())), unit, v);
 }
+
+HWY_INLINE Vector3 normalized(const Vector3& v) { return over_length(v, hn::Sqrt(dot3(v, v))); }
 
 HWY_INLINE VF32 power(VF32 base, int exponent) {
   VF32 result = set(1.0f);
@@ -62,22 +63,30 @@ HWY_INLINE VF32 power(VF32 base, int exponent) {
   return result;
 }
 
-/// Perspective-correct weights of the mesh triangle's vertices, three planes of 64.
-HWY_INLINE void block_weights(const BlockWeights& w, PixelMask mask, float (&planes)[3][kPixels]) {
+/// The pixels of lanes [i, i + lanes), of those in the mask.
+HWY_INLINE bool any_pixel(PixelMask mask, std::size_t i, std::size_t lanes) {
+  return (mask >> i & (~PixelMask{0} >> (kPixels - lanes))) != 0;
+}
+
+/// Perspective-correct weights of the mesh triangle's vertices in block b, three planes of 64.
+HWY_INLINE void block_weights(const TileWeights& w, std::size_t b, PixelMask mask,
+                              float (&planes)[3][kPixels]) {
   const hn::CappedTag<double, kWidth> d;
   const hn::Rebind<float, decltype(d)> single_d;
-  const auto area = hn::Set(d, w.area);
+  const auto x0 = static_cast<double>(b % 8 * 8), y0 = static_cast<double>(b / 8 * 8);
+  const auto one = hn::Set(d, 1.0);
   for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
-    if ((mask >> i & ((PixelMask{1} << hn::Lanes(d)) - 1)) == 0) continue;
-    const auto x = hn::Add(hn::Iota(d, 0.0), hn::Set(d, static_cast<double>(i % kWidth)));
-    const auto quotient = [&](std::size_t k) HWY_ATTR {
-      const auto first = hn::Set(d, w.edge[k] + static_cast<double>(i / kWidth) * w.step_y[k]);
+    if (!any_pixel(mask, i, hn::Lanes(d))) continue;
+    const auto x = hn::Iota(d, x0 + static_cast<double>(i % kWidth));
+    const double y = y0 + static_cast<double>(i / kWidth);
+    const auto scaled_edge = [&](std::size_t k) HWY_ATTR {
+      const auto first = hn::Set(d, w.edge[k] + y * w.step_y[k]);
       const auto edge = hn::Add(first, hn::Mul(x, hn::Set(d, w.step_x[k])));
-      return hn::Mul(hn::Div(edge, area), hn::Set(d, w.inverse_w[k]));
+      return hn::Mul(edge, hn::Set(d, w.scale[k]));
     };
-    const auto q0 = quotient(0), q1 = quotient(1), q2 = quotient(2);
-    const auto sum = hn::Add(hn::Add(q0, q1), q2);
-    const auto w0 = hn::Div(q0, sum), w1 = hn::Div(q1, sum), w2 = hn::Div(q2, sum);
+    const auto q0 = scaled_edge(0), q1 = scaled_edge(1), q2 = scaled_edge(2);
+    const auto inverse = hn::Div(one, hn::Add(hn::Add(q0, q1), q2));
+    const auto w0 = hn::Mul(q0, inverse), w1 = hn::Mul(q1, inverse), w2 = hn::Mul(q2, inverse);
     if (!w.is_piece) {
       hn::StoreU(hn::DemoteTo(single_d, w0), single_d, planes[w.order[0]] + i);
       hn::StoreU(hn::DemoteTo(single_d, w1), single_d, planes[w.order[1]] + i);
@@ -102,21 +111,22 @@ struct LightSums {
   Vector3 ambient, diffuse, specular;
 };
 
-HWY_INLINE void add_light(const BlockLight& light, const BlockLit& lit, const Vector3& normal,
+HWY_INLINE void add_light(const LitLight& light, const LitTerms& lit, const Vector3& normal,
                           const Vector3& world, LightSums& sums) {
   const DF32 d;
   const VF32 zero = hn::Zero(d);
   Vector3 to_light{set(light.position[0]), set(light.position[1]), set(light.position[2])};
   VF32 strength = set(1.0f);
-  if (light.position[3] != 0.0f) {
-    to_light = sub(to_light, world);
-    const VF32 distance = hn::Sqrt(dot3(to_light, to_light));
+  const bool is_point = light.position[3] != 0.0f;
+  if (is_point) to_light = sub(to_light, world);
+  const VF32 distance = hn::Sqrt(dot3(to_light, to_light));
+  if (is_point) {
     const VF32 attenuation =
         hn::Add(hn::Add(set(light.attenuation[0]), hn::Mul(set(light.attenuation[1]), distance)),
                 hn::Mul(set(light.attenuation[2]), hn::Mul(distance, distance)));
     strength = hn::IfThenElseZero(hn::Gt(attenuation, zero), hn::Div(set(1.0f), attenuation));
   }
-  to_light = normalized(to_light);
+  to_light = over_length(to_light, distance);
   if (light.spot_cos_cutoff > -1.0f) {
     const VF32 cosine = hn::Neg(dot3(to_light, set(light.spot_direction)));
     const VF32 positive = hn::IfThenZeroElse(hn::Lt(cosine, zero), cosine);
@@ -138,7 +148,7 @@ HWY_INLINE void add_light(const BlockLight& light, const BlockLit& lit, const Ve
             sums.specular);
 }
 
-HWY_INLINE Vector3 world_normal(const BlockShading& s, VF32 p0, VF32 p1, VF32 p2) {
+HWY_INLINE Vector3 world_normal(const TileShading& s, VF32 p0, VF32 p1, VF32 p2) {
   const auto n = [&](std::size_t c) HWY_ATTR {
     return weighted(s.normals[0][c], s.normals[1][c], s.normals[2][c], p0, p1, p2);
   };
@@ -151,7 +161,7 @@ HWY_INLINE Vector3 world_normal(const BlockShading& s, VF32 p0, VF32 p1, VF32 p2
   return {row(0), row(1), row(2)};
 }
 
-HWY_INLINE Vector3 world_position(const BlockShading& s, VF32 p0, VF32 p1, VF32 p2) {
+HWY_INLINE Vector3 world_position(const TileShading& s, VF32 p0, VF32 p1, VF32 p2) {
   const auto p = [&](std::size_t c) HWY_ATTR {
     return weighted(s.positions[0][c], s.positions[1][c], s.positions[2][c], p0, p1, p2);
   };
@@ -165,9 +175,8 @@ HWY_INLINE Vector3 world_position(const BlockShading& s, VF32 p0, VF32 p1, VF32 
 }
 
 /// The lit colour without alpha; `base` is the mesh's colour.
-HWY_INLINE Vector3 lit_color(const BlockShading& s, VF32 p0, VF32 p1, VF32 p2,
-                             const Vector3& base) {
-  const BlockLit& lit = *s.lit;
+HWY_INLINE Vector3 lit_color(const TileShading& s, VF32 p0, VF32 p1, VF32 p2, const Vector3& base) {
+  const LitTerms& lit = *s.lit;
   const VF32 zero = hn::Zero(DF32());
   Vector3 normal = normalized(world_normal(s, p0, p1, p2));
   if (s.reverse_normal) normal = {hn::Neg(normal.x), hn::Neg(normal.y), hn::Neg(normal.z)};
@@ -184,12 +193,12 @@ HWY_INLINE Vector3 lit_color(const BlockShading& s, VF32 p0, VF32 p1, VF32 p2,
   return color;
 }
 
-void shade_block(const BlockShading& s, PixelMask mask, float* colors) noexcept {
+void shade_block(const TileShading& s, std::size_t b, PixelMask mask, float* colors) noexcept {
   const DF32 d;
   alignas(64) float planes[3][kPixels];
-  block_weights(s.weights, mask, planes);
+  block_weights(s.weights, b, mask, planes);
   for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
-    if ((mask >> i & ((PixelMask{1} << hn::Lanes(d)) - 1)) == 0) continue;
+    if (!any_pixel(mask, i, hn::Lanes(d))) continue;
     const VF32 p0 = hn::Load(d, planes[0] + i), p1 = hn::Load(d, planes[1] + i),
                p2 = hn::Load(d, planes[2] + i);
     const auto base = [&](std::size_t c) HWY_ATTR {
@@ -227,6 +236,16 @@ void store_colors(const float* colors, PixelMask mask, std::uint8_t* stored) noe
         hn::Or(hn::Or(channel(0, i), hn::ShiftLeft<8>(channel(1, i))),
                hn::Or(hn::ShiftLeft<16>(channel(2, i)), hn::ShiftLeft<24>(channel(3, i))));
     hn::BlendedStore(rgba, here, whole_d, to + i);
+  }
+}
+
+void shade_and_store(const TileShading& shading, BlockMask blocks, const PixelMask* masks,
+                     std::uint8_t* stored) noexcept {
+  alignas(64) float colors[4 * kPixels];
+  for (BlockMask rest = blocks; rest; rest &= rest - 1) {
+    const auto b = static_cast<std::size_t>(__builtin_ctzll(rest));
+    shade_block(shading, b, masks[b], colors);
+    store_colors(colors, masks[b], stored + b * kPixels * 4);
   }
 }
 

@@ -14,8 +14,8 @@ namespace gnomon::raster {
 
 /// What all blocks of a draw share.
 struct DrawShading {
-  std::optional<BlockLit> lit;
-  std::vector<BlockLight> lights;
+  std::optional<LitTerms> lit;
+  std::vector<LitLight> lights;
   /// With `lit`, back faces are lit with the reversed normal.
   bool two_sided = false;
 };
@@ -23,12 +23,9 @@ struct DrawShading {
 /// Absent if the draw is shaded pixel by pixel.
 std::optional<DrawShading> make_draw_shading(const Draw& draw);
 
-/// A triangle's part that all of its blocks share; weights' edges are set by set_block.
-BlockShading make_triangle_shading(const Draw& draw, const DrawShading& shading,
-                                   const SetupTriangle& triangle,
-                                   std::span<const PieceWeights> pieces);
-
-/// Moves the weights to the block whose first pixel is (x, y).
-void set_block(const SetupTriangle& triangle, int x, int y, BlockShading& shading);
+/// A triangle's shading in the tile whose first pixel is (x, y).
+TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
+                              const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
+                              int x, int y);
 
 }  // namespace gnomon::raster
