@@ -11,22 +11,44 @@ namespace {
 
 Int128 magnitude(Int128 value) { return value < 0 ? -value : value; }
 
-/// Change of depth a 1/256 pixel, times the area.
-struct Slopes {
-  Int128 x, y;
+/// Differences of the vertices from the first one.
+struct Sides {
+  std::int64_t dx1, dy1, dz1, dx2, dy2, dz2;
+
+  explicit Sides(const std::array<SnappedVertex, 3>& v)
+      : dx1(v[1].x_fx - v[0].x_fx),
+        dy1(v[1].y_fx - v[0].y_fx),
+        dz1(v[1].z_fx - v[0].z_fx),
+        dx2(v[2].x_fx - v[0].x_fx),
+        dy2(v[2].y_fx - v[0].y_fx),
+        dz2(v[2].z_fx - v[0].z_fx) {}
+
+  /// The slopes below fit 62 bits: coordinates are at most 2^25 apart.
+  bool is_shallow() const {
+    constexpr std::int64_t kShallow = std::int64_t{1} << 35;
+    return std::abs(dz1) < kShallow && std::abs(dz2) < kShallow;
+  }
+  /// Change of depth a 1/256 pixel, times the area.
+  template <class Integer>
+  Integer slope_x() const {
+    return static_cast<Integer>(dz1) * dy2 - static_cast<Integer>(dz2) * dy1;
+  }
+  template <class Integer>
+  Integer slope_y() const {
+    return static_cast<Integer>(dx1) * dz2 - static_cast<Integer>(dx2) * dz1;
+  }
 };
 
-/// Depth differences below this keep both products of a slope in 62 bits.
-constexpr std::int64_t kShallow = std::int64_t{1} << 36;
+/// numerator / area to the nearest integer, modulo 2^64.
+std::uint64_t quotient(Int128 numerator, std::int64_t area) {
+  return static_cast<std::uint64_t>(round_div(numerator, area));
+}
 
-Slopes slopes_times_area(const std::array<SnappedVertex, 3>& vertices) {
-  const auto& [v0, v1, v2] = vertices;
-  const std::int64_t dx1 = v1.x_fx - v0.x_fx, dy1 = v1.y_fx - v0.y_fx, dz1 = v1.z_fx - v0.z_fx;
-  const std::int64_t dx2 = v2.x_fx - v0.x_fx, dy2 = v2.y_fx - v0.y_fx, dz2 = v2.z_fx - v0.z_fx;
-  if (std::abs(dz1) < kShallow && std::abs(dz2) < kShallow)
-    return {dz1 * dy2 - dz2 * dy1, dx1 * dz2 - dx2 * dz1};
-  const Int128 wide1 = dz1, wide2 = dz2;
-  return {wide1 * dy2 - wide2 * dy1, dx1 * wide2 - dx2 * wide1};
+/// slope * 256 / area to the nearest integer, modulo 2^64, for a shallow slope.
+std::uint64_t step_of(std::int64_t slope, std::int64_t area) {
+  const double estimate = static_cast<double>(slope) * 256.0 / static_cast<double>(area);
+  if (!(std::abs(estimate) < kLargestEstimate)) return quotient(Int128{slope} * 256, area);
+  return round_div_near(static_cast<std::uint64_t>(slope) * 256, area, estimate);
 }
 
 /// factor * largest slope + units, in plane units, to nearest; bounded so that sums with a vertex
@@ -45,22 +67,21 @@ std::int64_t offset_in_plane_units(const PolygonOffset& offset, double slope, in
 DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,
                             const std::optional<PolygonOffset>& offset, DepthFormat format,
                             std::uint32_t low, std::uint32_t high) {
-  Slopes slopes = slopes_times_area(vertices);
-  if (area < 0) slopes = {-slopes.x, -slopes.y};
-  area = std::abs(area);
-  const double area_px = static_cast<double>(area);
-  const double slope_x = static_cast<double>(slopes.x) * 256.0,
-               slope_y = static_cast<double>(slopes.y) * 256.0;
-
-  DepthPlane plane;
-  plane.step_x = round_div_near(slopes.x * 256, area, slope_x / area_px);
-  plane.step_y = round_div_near(slopes.y * 256, area, slope_y / area_px);
-
+  const Sides sides(vertices);
   const int fraction_bits = depth_fraction_bits(format);
+  DepthPlane plane;
+  if (sides.is_shallow()) {
+    plane.step_x = step_of(sides.slope_x<std::int64_t>(), area);
+    plane.step_y = step_of(sides.slope_y<std::int64_t>(), area);
+  } else {
+    plane.step_x = quotient(sides.slope_x<Int128>() * 256, area);
+    plane.step_y = quotient(sides.slope_y<Int128>() * 256, area);
+  }
   if (offset) {
     // Not the steps: a large factor would multiply their rounding.
-    const Int128 largest = std::max(magnitude(slopes.x), magnitude(slopes.y));
-    const double slope = static_cast<double>(largest) * 256.0 / area_px;
+    const Int128 largest =
+        std::max(magnitude(sides.slope_x<Int128>()), magnitude(sides.slope_y<Int128>()));
+    const double slope = static_cast<double>(largest) * 256.0 / static_cast<double>(area);
     plane.offset = offset_in_plane_units(*offset, slope, fraction_bits);
   }
   const auto [z_min, z_max] = std::minmax({vertices[0].z_fx, vertices[1].z_fx, vertices[2].z_fx});
@@ -71,13 +92,23 @@ DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::i
 
 std::uint64_t depth_base_at(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,
                             std::int64_t offset, int x_px, int y_px) {
-  const Slopes slopes = slopes_times_area(vertices);
+  const Sides sides(vertices);
   const std::int64_t dx = x_px * std::int64_t{256} + 128 - vertices[0].x_fx;
   const std::int64_t dy = y_px * std::int64_t{256} + 128 - vertices[0].y_fx;
-  const Int128 rise_times_area = slopes.x * dx + slopes.y * dy;
-  const std::uint64_t rise = round_div_near(
-      rise_times_area, area, static_cast<double>(rise_times_area) / static_cast<double>(area));
-  return rise + static_cast<std::uint64_t>(vertices[0].z_fx + offset);
+  const auto anchor = static_cast<std::uint64_t>(vertices[0].z_fx + offset);
+  if (sides.is_shallow()) {
+    const auto slope_x = sides.slope_x<std::int64_t>(), slope_y = sides.slope_y<std::int64_t>();
+    // Both products are below 2^87, so their rounding in double is below 2^36.
+    const double estimate = (static_cast<double>(slope_x) * static_cast<double>(dx) +
+                             static_cast<double>(slope_y) * static_cast<double>(dy)) /
+                            static_cast<double>(area);
+    if (std::abs(estimate) < kLargestEstimate)
+      return anchor + round_div_near(
+                          static_cast<std::uint64_t>(slope_x) * static_cast<std::uint64_t>(dx) +
+                              static_cast<std::uint64_t>(slope_y) * static_cast<std::uint64_t>(dy),
+                          area, estimate);
+  }
+  return anchor + quotient(sides.slope_x<Int128>() * dx + sides.slope_y<Int128>() * dy, area);
 }
 
 }  // namespace gnomon::raster

@@ -51,7 +51,7 @@ struct DepthPlane {
   bool narrow = true;
 };
 
-/// Preconditions: area is the vertices' doubled signed area and not zero; |z_fx| <=
+/// Preconditions: area is the vertices' doubled signed area and positive; |z_fx| <=
 /// kMaxVertexDepth. low and high are the bounds of depth in depth units that fragments are clamped
 /// to.
 DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,

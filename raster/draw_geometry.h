@@ -12,8 +12,9 @@
 
 namespace gnomon::raster {
 
-/// Mesh triangles that are set up and binned together.
-struct TriangleChunk {
+/// Mesh triangles that are set up and binned together, by one thread; apart from what other threads
+/// write, so that no cache line goes to and fro.
+struct alignas(128) TriangleChunk {
   SetupTriangles set_up;
   TileBins bins;
 };

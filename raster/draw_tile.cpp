@@ -279,6 +279,13 @@ BlockMask DrawInTile::blocks_with_stencil(const FaceSetup& face) {
   return *blocks;
 }
 
+bool DrawInTile::is_idle() {
+  const auto idle = [&](const FaceSetup& face) {
+    return (!face.pass_marks && !face.fail_marks) || (face.selects && !blocks_with_stencil(face));
+  };
+  return idle(fragments_.front) && idle(fragments_.back);
+}
+
 void DrawInTile::draw(const SetupTriangle& triangle,
                       std::span<const PieceWeights> pieces) noexcept {
   const FaceSetup& face = triangle.front_facing ? fragments_.front : fragments_.back;

@@ -50,6 +50,9 @@ class DrawInTile {
   /// Precondition: `pixels` uses the draw's targets.
   DrawInTile(const DrawSetup& setup, const FragmentSetup& fragments, TilePixels& pixels);
 
+  /// No triangle can leave a mark in the tile.
+  bool is_idle();
+
   /// Draws the triangle's pixels inside the tile. `pieces` are those of its SetupTriangles.
   void draw(const SetupTriangle& triangle, std::span<const PieceWeights> pieces) noexcept;
 

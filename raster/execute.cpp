@@ -18,7 +18,7 @@ namespace gnomon::raster {
 
 namespace {
 
-constexpr std::size_t kVerticesPerChunk = 2048;
+constexpr std::size_t kVerticesPerPiece = 2048;
 /// A group ends when its draws have so many triangles (a set-up triangle takes some 200 bytes), or
 /// so many commands.
 constexpr std::size_t kTrianglesPerGroup = std::size_t{1} << 21, kCommandsPerGroup = 512;
@@ -54,7 +54,7 @@ struct ExecuteMemory::Parts {
   /// The first geometry_count of them are in use.
   std::vector<std::unique_ptr<DrawGeometry>> geometries;
   std::size_t geometry_count = 0;
-  std::vector<Task> tasks;
+  std::vector<Task> vertices, chunks;
 };
 
 ExecuteMemory::ExecuteMemory() : parts_(std::make_unique<Parts>()) {}
@@ -74,8 +74,10 @@ std::size_t geometry_of(Memory& memory, const DrawSetup& setup) {
   return memory.geometry_count++;
 }
 
-void set_up_draws(Memory& memory, const Kernels& kernels, int threads) {
+void set_up_draws(Memory& memory) {
   memory.geometry_count = 0;
+  memory.vertices.clear();
+  memory.chunks.clear();
   for (Job& job : memory.jobs) {
     const Draw* draw = std::get_if<Draw>(job.command);
     if (!draw) continue;
@@ -83,31 +85,25 @@ void set_up_draws(Memory& memory, const Kernels& kernels, int threads) {
     job.fragments = make_fragment_setup(*draw, job.targets);
     job.geometry = geometry_of(memory, job.setup);
   }
-  std::vector<Task>& tasks = memory.tasks;
-  const auto each_task = [&](auto run) {
-    for_each_chunk(tasks.size(), 1, threads,
-                   [&](std::size_t first, std::size_t) { run(tasks[first]); });
-    tasks.clear();
-  };
   for (std::size_t g = 0; g < memory.geometry_count; ++g) {
-    const std::size_t count = memory.geometries[g]->vertex_count();
-    for (std::size_t i = 0; i < count; i += kVerticesPerChunk)
-      tasks.push_back({memory.geometries[g].get(), i, std::min(count, i + kVerticesPerChunk)});
+    DrawGeometry* const geometry = memory.geometries[g].get();
+    for (std::size_t i = 0; i < geometry->vertex_count(); i += kVerticesPerPiece)
+      memory.vertices.push_back(
+          {geometry, i, std::min(geometry->vertex_count(), i + kVerticesPerPiece)});
+    for (std::size_t chunk = 0; chunk < geometry->chunk_count(); ++chunk)
+      memory.chunks.push_back({geometry, chunk, chunk + 1});
   }
-  each_task([&](const Task& task) { task.geometry->run_vertices(kernels, task.first, task.last); });
-  for (std::size_t g = 0; g < memory.geometry_count; ++g)
-    for (std::size_t chunk = 0; chunk < memory.geometries[g]->chunk_count(); ++chunk)
-      tasks.push_back({memory.geometries[g].get(), chunk, chunk + 1});
-  each_task([](const Task& task) { task.geometry->run_chunk(task.first); });
 }
 
 void draw_in_tile(const Job& job, const DrawGeometry& geometry, TilePixels& pixels) {
   std::optional<DrawInTile> draw;
-  for (const TriangleChunk& chunk : geometry.chunks())
-    for (const std::uint32_t number : chunk.bins.of(pixels.tile())) {
-      if (!draw) draw.emplace(job.setup, job.fragments, pixels);
+  for (const TriangleChunk& chunk : geometry.chunks()) {
+    const std::span<const std::uint32_t> numbers = chunk.bins.of(pixels.tile());
+    if (numbers.empty()) continue;
+    if (!draw && draw.emplace(job.setup, job.fragments, pixels).is_idle()) return;
+    for (const std::uint32_t number : numbers)
       draw->draw(chunk.set_up.triangles[number], chunk.set_up.pieces);
-    }
+  }
 }
 
 void run_tile(const Memory& memory, const Kernels& kernels, std::size_t tile, const Size& size) {
@@ -158,10 +154,18 @@ bool must_wait(const std::vector<Job>& jobs, const Command& command, const Targe
 
 void run_group(Memory& memory, const Size& size, const Kernels& kernels, int threads) {
   if (memory.jobs.empty()) return;
-  set_up_draws(memory, kernels, threads);
-  const std::size_t tiles = static_cast<std::size_t>(size.tiles_x()) * size.tiles_y();
-  for_each_chunk(tiles, 1, threads,
-                 [&](std::size_t first, std::size_t) { run_tile(memory, kernels, first, size); });
+  set_up_draws(memory);
+  const Phase phases[] = {
+      {memory.vertices.size(),
+       [&](std::size_t i) {
+         const Task& task = memory.vertices[i];
+         task.geometry->run_vertices(kernels, task.first, task.last);
+       }},
+      {memory.chunks.size(),
+       [&](std::size_t i) { memory.chunks[i].geometry->run_chunk(memory.chunks[i].first); }},
+      {static_cast<std::size_t>(size.tiles_x()) * size.tiles_y(),
+       [&](std::size_t tile) { run_tile(memory, kernels, tile, size); }}};
+  run_phases(phases, threads);
   memory.jobs.clear();
 }
 

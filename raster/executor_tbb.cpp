@@ -1,12 +1,11 @@
-#include "raster/executor.h"
-
-#include <algorithm>
 #include <optional>
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include "raster/executor.h"
 
 #ifdef GNOMON_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
@@ -30,31 +29,23 @@ class OrderedPoint {
 
 }  // namespace
 
-void for_each_chunk(std::size_t count, std::size_t chunk, int threads,
-                    const std::function<void(std::size_t first, std::size_t last)>& body) {
-  const std::size_t chunks = (count + chunk - 1) / chunk;
-  OrderedPoint fork, join;
-  const auto run = [&](std::size_t i) {
-    fork.acquire();
-    body(i * chunk, std::min(count, (i + 1) * chunk));
-    join.release();
-  };
-  fork.release();
-  if (threads == 1 || chunks <= 1) {
-    for (std::size_t i = 0; i < chunks; ++i) run(i);
-    return;
-  }
+void run_on_threads(int threads, const std::function<void()>& worker) {
+  const int wanted = threads > 0 ? threads : tbb::info::default_concurrency();
   // The scheduler keeps no more workers than the machine has unless it is told to.
   std::optional<tbb::global_control> more_workers;
-  if (threads > tbb::info::default_concurrency())
+  if (wanted > tbb::info::default_concurrency())
     more_workers.emplace(tbb::global_control::max_allowed_parallelism,
-                         static_cast<std::size_t>(threads));
-  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
+                         static_cast<std::size_t>(wanted));
+  OrderedPoint fork, join;
+  fork.release();
+  tbb::task_arena arena(wanted);
   arena.execute([&] {
     tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, chunks, 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) run(i);
+        tbb::blocked_range<int>(0, wanted, 1),
+        [&](const tbb::blocked_range<int>&) {
+          fork.acquire();
+          worker();
+          join.release();
         },
         tbb::simple_partitioner());
   });

@@ -88,12 +88,6 @@ void bound_depths(const DrawSetup& setup, SetupTriangle& triangle) {
 bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVertex& v1,
             const ProjectedVertex& v2, SetupTriangle& out) {
   const SnappedVertex &s0 = v0.snapped, &s1 = v1.snapped, &s2 = v2.snapped;
-  const auto [x_min, x_max] = std::minmax({s0.x_fx, s1.x_fx, s2.x_fx});
-  const auto [y_min, y_max] = std::minmax({s0.y_fx, s1.y_fx, s2.y_fx});
-  out.box = intersect(setup.box,
-                      {first_pixel(x_min), first_pixel(y_min), end_pixel(x_max), end_pixel(y_max)});
-  if (out.box.empty()) return false;
-
   const std::int64_t dx1 = s1.x_fx - s0.x_fx, dy1 = s1.y_fx - s0.y_fx;
   const std::int64_t dx2 = s2.x_fx - s0.x_fx, dy2 = s2.y_fx - s0.y_fx;
   const std::int64_t area = dx1 * dy2 - dx2 * dy1;
@@ -101,6 +95,11 @@ bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVe
   const State& state = setup.draw->state;
   out.front_facing = (area > 0) == (state.front_face == FrontFace::ccw);
   if (culled(state.cull, out.front_facing)) return false;
+  const auto [x_min, x_max] = std::minmax({s0.x_fx, s1.x_fx, s2.x_fx});
+  const auto [y_min, y_max] = std::minmax({s0.y_fx, s1.y_fx, s2.y_fx});
+  out.box = intersect(setup.box,
+                      {first_pixel(x_min), first_pixel(y_min), end_pixel(x_max), end_pixel(y_max)});
+  if (out.box.empty()) return false;
   out.small =
       x_max - x_min < SetupTriangle::kSmall * 256 && y_max - y_min < SetupTriangle::kSmall * 256;
   out.swapped = area < 0;

@@ -19,21 +19,19 @@ inline Int128 round_div(Int128 numerator, Int128 denominator) {
   return floor_div(2 * numerator + denominator, 2 * denominator);
 }
 
-/// round_div(numerator, denominator) modulo 2^64, faster, from an estimate of the quotient.
-/// Preconditions: 0 < denominator < 2^52; the estimate is within 2^-50 of the quotient, relatively.
-/// The result does not depend on the estimate: the remainder is exact.
-inline std::uint64_t round_div_near(Int128 numerator, std::int64_t denominator, double estimate) {
-  // Then estimate and quotient are apart by less than 2^10, so the remainder is below 2^63 and its
-  // low 64 bits are all of it.
-  constexpr double kLargest = 0x1p59;
-  if (!(std::abs(estimate) < kLargest))
-    return static_cast<std::uint64_t>(round_div(numerator, denominator));
+/// numerator / denominator to the nearest integer, a half upwards, modulo 2^64, from an estimate of
+/// the quotient and the numerator's low 64 bits. The result does not depend on the estimate: the
+/// remainder is exact.
+/// Preconditions: 0 < denominator < 2^52; |estimate| < kLargestEstimate; estimate and quotient are
+/// apart by less than 2^10 + 2^60 / denominator.
+inline constexpr double kLargestEstimate = 0x1p59;
+inline std::uint64_t round_div_near(std::uint64_t numerator, std::int64_t denominator,
+                                    double estimate) {
   const std::int64_t quotient = std::llrint(estimate);
-  const auto remainder = static_cast<std::int64_t>(static_cast<std::uint64_t>(numerator) -
-                                                   static_cast<std::uint64_t>(quotient) *
-                                                       static_cast<std::uint64_t>(denominator));
-  const std::int64_t half = (denominator + 1) >> 1;
-  if (remainder >= -(denominator >> 1) && remainder < half)
+  // Below 2^63, so its low 64 bits are all of it.
+  const auto remainder = static_cast<std::int64_t>(
+      numerator - static_cast<std::uint64_t>(quotient) * static_cast<std::uint64_t>(denominator));
+  if (remainder >= -(denominator >> 1) && remainder < (denominator + 1) >> 1)
     return static_cast<std::uint64_t>(quotient);
   return static_cast<std::uint64_t>(quotient) +
          static_cast<std::uint64_t>(round_div(remainder, denominator));
