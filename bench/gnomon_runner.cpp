@@ -1,8 +1,6 @@
 // gnomon as a runner: a frame is recorded anew each time, as a moving scene would have it, and
 // executed as a whole and pass by pass.
 #include <cstddef>
-#include <optional>
-#include <span>
 #include <stdexcept>
 #include <utility>
 

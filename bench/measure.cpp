@@ -21,7 +21,7 @@ struct Place {
   Size size;
 };
 
-/// "map" is a beginning of "map" and of "map-tori".
+/// "layer" is a beginning of "layer-random"; "tori-1" is none of "tori-12".
 bool begins(const std::string& name, const std::string& wanted) {
   return name == wanted || name.starts_with(wanted + "-");
 }

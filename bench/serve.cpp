@@ -3,10 +3,10 @@
 #include <fstream>
 #include <iostream>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include <malloc.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "bench/worker.h"
@@ -21,10 +21,13 @@ std::size_t resident_bytes() {
   return resident_pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
+/// Of this program's own memory: getrusage's figure would begin with the parent's.
 std::size_t peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) * 1024;
+  }
+  throw std::runtime_error("/proc/self/status has no VmHWM");
 }
 
 /// Freed memory stays with the process: Mesa allocates and frees its bins every frame, and what it

@@ -51,16 +51,23 @@ std::string cell(const Row* row) {
   return text;
 }
 
-/// What the Markdown tables set side by side.
-constexpr std::pair<System, Method> kColumns[] = {
-    {System::gnomon, Method::automatic}, {System::gnomon, Method::zpass},
-    {System::gnomon, Method::zfail},     {System::llvmpipe, Method::zpass},
-    {System::llvmpipe, Method::zfail},   {System::softpipe, Method::automatic},
-    {System::embree, Method::rays}};
+/// What the Markdown tables set side by side; a layer's only method stands in for `automatic` of a
+/// peer.
+struct Column {
+  System system;
+  Method method, else_method;
+};
+constexpr Column kColumns[] = {{System::gnomon, Method::automatic, Method::automatic},
+                               {System::gnomon, Method::zpass, Method::zpass},
+                               {System::gnomon, Method::zfail, Method::zfail},
+                               {System::llvmpipe, Method::automatic, Method::automatic},
+                               {System::llvmpipe, Method::zfail, Method::zfail},
+                               {System::softpipe, Method::automatic, Method::zfail},
+                               {System::embree, Method::rays, Method::rays}};
 
 std::string markdown_of(const std::vector<Row>& rows, Stage stage) {
   std::string out = "| scene | size | threads |", rule = "| --- | --- | --- |";
-  for (const auto& [system, method] : kColumns) {
+  for (const auto& [system, method, other] : kColumns) {
     out += fmt::format(" {} {} |", name(system), name(method));
     rule += " --- |";
   }
@@ -71,8 +78,9 @@ std::string markdown_of(const std::vector<Row>& rows, Stage stage) {
     place = line.first;
     std::string cells;
     bool any = false;
-    for (const auto& [system, method] : kColumns) {
+    for (const auto& [system, method, other] : kColumns) {
       const Row* row = find(rows, *place, system, method, stage);
+      if (!row) row = find(rows, *place, system, other, stage);
       any = any || row;
       cells += " " + cell(row) + " |";
     }

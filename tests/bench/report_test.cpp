@@ -128,7 +128,7 @@ TEST(Markdown, HasARowAPlaceUnderDateProcessorAndCommit) {
   complete(report.rows);
   const std::string text = markdown(report);
   EXPECT_THAT(text, HasSubstr("2026-01-31; a processor; commit abc"));
-  EXPECT_THAT(text, HasSubstr("| tori-12 | 640x480 | 2 | 2.00 | 4.00 | 5.00 | 20.00 (5.0x) | "
+  EXPECT_THAT(text, HasSubstr("| tori-12 | 640x480 | 2 | 2.00 | 4.00 | 5.00 | 20.00 (10.0x) | "
                               "30.00 (6.0x) | - | 8.00 (4.0x) |"));
 }
 
