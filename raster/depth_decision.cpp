@@ -86,7 +86,8 @@ BlockDepths bound_plane(const TileDepth& plane, std::int32_t least, std::int32_t
   return depths;
 }
 
-DepthBounds bounds_in_box(const TileDepth& plane, const BlockDepths& depths, const PixelBox& box) {
+DepthInterval bounds_in_box(const TileDepth& plane, const BlockDepths& depths,
+                            const PixelBox& box) {
   const SignedPlane p(plane);
   if (!p.is_tame()) return {depths.least, depths.greatest};
   const auto [left, right] = std::minmax({box.x0 * p.dx, (box.x1 - 1) * p.dx});

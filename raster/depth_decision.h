@@ -30,16 +30,11 @@ struct DepthDecision {
   void settle(const DecidedBlocks& decided, TestedBlocks& tested) const;
 };
 
-/// Bounds of depths, in depth units.
-struct DepthBounds {
-  std::int32_t least, greatest;
-};
-
 /// Bounds of a plane's depths block by block, between least and greatest everywhere. Where the
 /// plane is too far from any depth, or too steep, these two are all there is.
 BlockDepths bound_plane(const TileDepth& plane, std::int32_t least, std::int32_t greatest);
 
 /// Bounds over a box in the tile's pixels, of the plane that `depths` came from.
-DepthBounds bounds_in_box(const TileDepth& plane, const BlockDepths& depths, const PixelBox& box);
+DepthInterval bounds_in_box(const TileDepth& plane, const BlockDepths& depths, const PixelBox& box);
 
 }  // namespace gnomon::raster

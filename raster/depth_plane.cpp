@@ -91,11 +91,11 @@ DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::i
 }
 
 std::uint64_t depth_base_at(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,
-                            std::int64_t offset, int x_px, int y_px) {
+                            int x_px, int y_px) {
   const Sides sides(vertices);
   const std::int64_t dx = x_px * std::int64_t{256} + 128 - vertices[0].x_fx;
   const std::int64_t dy = y_px * std::int64_t{256} + 128 - vertices[0].y_fx;
-  const auto anchor = static_cast<std::uint64_t>(vertices[0].z_fx + offset);
+  const auto anchor = static_cast<std::uint64_t>(vertices[0].z_fx);
   if (sides.is_shallow()) {
     const auto slope_x = sides.slope_x<std::int64_t>(), slope_y = sides.slope_y<std::int64_t>();
     // Both products are below 2^87, so their rounding in double is below 2^36.

@@ -58,8 +58,9 @@ DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::i
                             const std::optional<PolygonOffset>& offset, DepthFormat format,
                             std::uint32_t low, std::uint32_t high);
 
-/// base of the tile whose bottom left pixel is (x_px, y_px), modulo 2^64. `area` is positive.
+/// base of the tile whose bottom left pixel is (x_px, y_px), modulo 2^64. `area` is positive; the
+/// polygon offset was added to the vertices.
 std::uint64_t depth_base_at(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,
-                            std::int64_t offset, int x_px, int y_px);
+                            int x_px, int y_px);
 
 }  // namespace gnomon::raster

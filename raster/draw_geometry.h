@@ -34,6 +34,9 @@ class DrawGeometry {
   /// Second step, after all vertices: set-up and bins of one chunk.
   void run_chunk(std::size_t chunk);
 
+  TriangleSource source_of(const TriangleChunk& chunk) const {
+    return {vertices_.projected, chunk.set_up.pieces};
+  }
   std::span<const TriangleChunk> chunks() const { return std::span(chunks_).first(chunk_count_); }
 
  private:

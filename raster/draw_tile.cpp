@@ -213,11 +213,11 @@ DrawInTile::DrawInTile(const DrawSetup& setup, const FragmentSetup& fragments, T
 void DrawInTile::set_plane(const SetupTriangle& triangle, TestedBlocks& tested) const {
   TileDepth& plane = tested.plane;
   plane.fraction_bits = depth_fraction_bits(setup_.depth_format);
-  plane.base = depth_base_at(triangle.vertices, triangle.area, triangle.depth.offset, x0_, y0_) +
+  plane.base = depth_base_at(triangle.vertices, triangle.area(), x0_, y0_) +
                (std::uint64_t{1} << (plane.fraction_bits - 1));
-  plane.step_x = triangle.depth.step_x;
-  plane.step_y = triangle.depth.step_y;
-  plane.narrow = triangle.depth.narrow;
+  plane.step_x = triangle.step_x;
+  plane.step_y = triangle.step_y;
+  plane.narrow = triangle.narrow;
   plane.low = setup_.depth_low;
   plane.high = setup_.depth_high;
 }
@@ -250,14 +250,14 @@ void DrawInTile::decide_tile(const FaceSetup& face, std::int32_t least, std::int
 }
 
 /// The same block by block, for a few by the vertices alone.
-void DrawInTile::decide_few(const SetupTriangle& triangle, const FaceSetup& face, BlockMask blocks,
+void DrawInTile::decide_few(const DepthInterval& bounds, const FaceSetup& face, BlockMask blocks,
                             TestedBlocks& tested) const {
   pixels_.know_ranges(blocks);
   const DepthRanges& ranges = pixels_.ranges();
   const DepthDecision decision(face.tests.depth_func);
   for_each_block_of(blocks, [&](std::size_t b) {
-    const DepthOutcome outcome = decision.of(triangle.least_depth, triangle.greatest_depth,
-                                             ranges.least[b], ranges.greatest[b]);
+    const DepthOutcome outcome =
+        decision.of(bounds.least, bounds.greatest, ranges.least[b], ranges.greatest[b]);
     if (outcome == DepthOutcome::passes) tested.depth_passes |= BlockMask{1} << b;
     if (outcome == DepthOutcome::fails) tested.depth_fails |= BlockMask{1} << b;
   });
@@ -286,12 +286,11 @@ bool DrawInTile::is_idle() {
   return idle(fragments_.front) && idle(fragments_.back);
 }
 
-void DrawInTile::draw(const SetupTriangle& triangle,
-                      std::span<const PieceWeights> pieces) noexcept {
+void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& source) noexcept {
   const FaceSetup& face = triangle.front_facing ? fragments_.front : fragments_.back;
-  const PixelBox box = {std::max(triangle.box.x0 - x0_, 0), std::max(triangle.box.y0 - y0_, 0),
-                        std::min(triangle.box.x1 - x0_, kTileSize),
-                        std::min(triangle.box.y1 - y0_, kTileSize)};
+  const PixelBox box = {std::max(triangle.x0 - x0_, 0), std::max(triangle.y0 - y0_, 0),
+                        std::min(triangle.x1 - x0_, kTileSize),
+                        std::min(triangle.y1 - y0_, kTileSize)};
   if (box.empty()) return;
   const BoxBlocks near = blocks_of(box);
   const bool few = near.count <= kFewBlocks;
@@ -303,7 +302,8 @@ void DrawInTile::draw(const SetupTriangle& triangle,
                       .depth = pixels_.depth(),
                       .stencil = pixels_.stencil()};
   const bool compares = !face.depth_always && !face.depth_never;
-  if (compares) decide_tile(face, triangle.least_depth, triangle.greatest_depth, tested);
+  const DepthInterval bounds = compares ? vertex_depths(triangle, setup_) : DepthInterval{};
+  if (compares) decide_tile(face, bounds.least, bounds.greatest, tested);
   blocks = marked(face, blocks, tested);
   if (!blocks) return;
 
@@ -316,8 +316,8 @@ void DrawInTile::draw(const SetupTriangle& triangle,
   if (!few && compares && is_open()) {
     set_plane(triangle, tested);
     has_plane = true;
-    depths = bound_plane(tested.plane, triangle.least_depth, triangle.greatest_depth);
-    const DepthBounds inside = bounds_in_box(tested.plane, depths, box);
+    depths = bound_plane(tested.plane, bounds.least, bounds.greatest);
+    const DepthInterval inside = bounds_in_box(tested.plane, depths, box);
     decide_tile(face, inside.least, inside.greatest, tested);
     blocks = marked(face, blocks, tested);
     if (!blocks) return;
@@ -327,7 +327,7 @@ void DrawInTile::draw(const SetupTriangle& triangle,
     blocks &= kernels_.cover_blocks(edges, filled);
   if (compares && is_open() && blocks) {
     if (few)
-      decide_few(triangle, face, blocks, tested);
+      decide_few(bounds, face, blocks, tested);
     else
       decide_blocks(face, depths, blocks, tested);
     blocks = marked(face, blocks, tested);
@@ -351,7 +351,7 @@ void DrawInTile::draw(const SetupTriangle& triangle,
   const BlockMask passed = kernels_.test_blocks(face.tests, tested, covered.data());
   if (face.tests.depth_test && face.tests.depth_write)
     for_each_block_of(passed, [&](std::size_t b) { pixels_.ranges().forget(b); });
-  if (fragments_.color) color_blocks(triangle, pieces, passed, covered.data());
+  if (fragments_.color) color_blocks(triangle, source, passed, covered.data());
 }
 
 /// Counts the blocks that the triangle fills and marks as a whole, and returns the others.
@@ -383,7 +383,7 @@ BlockMask DrawInTile::cover_blocks(const SetupTriangle& triangle, const TileEdge
   return touched;
 }
 
-void DrawInTile::color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
+void DrawInTile::color_blocks(const SetupTriangle& triangle, const TriangleSource& source,
                               BlockMask blocks, const PixelMask* passed) const {
   const Draw& draw = *setup_.draw;
   if (!blocks) return;
@@ -395,7 +395,7 @@ void DrawInTile::color_blocks(const SetupTriangle& triangle, std::span<const Pie
   const bool in_vectors = fragments_.shading && kernels_.shade_block;
   TileShading shading;
   if (in_vectors)
-    shading = make_tile_shading(draw, *fragments_.shading, triangle, pieces, x0_, y0_);
+    shading = make_tile_shading(draw, *fragments_.shading, triangle, source, x0_, y0_);
   if (in_vectors && writer_->plain_rgba8()) {
     kernels_.shade_and_store(shading, blocks, passed, writer_->plain_rgba8());
     return;
@@ -405,20 +405,20 @@ void DrawInTile::color_blocks(const SetupTriangle& triangle, std::span<const Pie
     if (in_vectors)
       kernels_.shade_block(shading, b, passed[b], colors.data());
     else
-      shade_pixels(triangle, pieces, b, passed[b], colors);
+      shade_pixels(triangle, source, b, passed[b], colors);
     writer_->write(b, passed[b], colors);
   });
 }
 
 /// The colours of block b pixel by pixel.
-void DrawInTile::shade_pixels(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
+void DrawInTile::shade_pixels(const SetupTriangle& triangle, const TriangleSource& source,
                               std::size_t b, PixelMask pixels, ColorPlanes& colors) const {
   const Draw& draw = *setup_.draw;
   const int x = x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize;
   const int y = y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize;
   for_each_pixel(pixels, [&](std::size_t i) {
     const int px = x + static_cast<int>(i) % kBlockSize, py = y + static_cast<int>(i) / kBlockSize;
-    set_color(colors, i, shade(draw.shading, interpolate(draw, triangle, pieces, px, py)));
+    set_color(colors, i, shade(draw.shading, interpolate(draw, triangle, source, px, py)));
   });
 }
 

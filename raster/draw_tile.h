@@ -53,14 +53,14 @@ class DrawInTile {
   /// No triangle can leave a mark in the tile.
   bool is_idle();
 
-  /// Draws the triangle's pixels inside the tile. `pieces` are those of its SetupTriangles.
-  void draw(const SetupTriangle& triangle, std::span<const PieceWeights> pieces) noexcept;
+  /// Draws the triangle's pixels inside the tile. `source` is that of its chunk.
+  void draw(const SetupTriangle& triangle, const TriangleSource& source) noexcept;
 
  private:
   static BlockMask marked(const FaceSetup& face, BlockMask blocks, const TestedBlocks& tested);
   void decide_tile(const FaceSetup& face, std::int32_t least, std::int32_t greatest,
                    TestedBlocks& tested) const;
-  void decide_few(const SetupTriangle& triangle, const FaceSetup& face, BlockMask blocks,
+  void decide_few(const DepthInterval& bounds, const FaceSetup& face, BlockMask blocks,
                   TestedBlocks& tested) const;
   void decide_blocks(const FaceSetup& face, const BlockDepths& depths, BlockMask blocks,
                      TestedBlocks& tested) const;
@@ -70,10 +70,10 @@ class DrawInTile {
                          BlockMask filled, PixelMask* covered) const;
   void set_plane(const SetupTriangle& triangle, TestedBlocks& tested) const;
   BlockMask blocks_with_stencil(const FaceSetup& face);
-  void color_blocks(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
-                    BlockMask blocks, const PixelMask* passed) const;
-  void shade_pixels(const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
-                    std::size_t b, PixelMask pixels, ColorPlanes& colors) const;
+  void color_blocks(const SetupTriangle& triangle, const TriangleSource& source, BlockMask blocks,
+                    const PixelMask* passed) const;
+  void shade_pixels(const SetupTriangle& triangle, const TriangleSource& source, std::size_t b,
+                    PixelMask pixels, ColorPlanes& colors) const;
 
   const DrawSetup& setup_;
   const FragmentSetup& fragments_;

@@ -19,7 +19,7 @@ namespace gnomon::raster {
 namespace {
 
 constexpr std::size_t kVerticesPerPiece = 2048;
-/// A group ends when its draws have so many triangles (a set-up triangle takes some 200 bytes), or
+/// A group ends when its draws have so many triangles (a set-up triangle takes 88 bytes), or
 /// so many commands.
 constexpr std::size_t kTrianglesPerGroup = std::size_t{1} << 21, kCommandsPerGroup = 512;
 
@@ -101,8 +101,8 @@ void draw_in_tile(const Job& job, const DrawGeometry& geometry, TilePixels& pixe
     const std::span<const std::uint32_t> numbers = chunk.bins.of(pixels.tile());
     if (numbers.empty()) continue;
     if (!draw && draw.emplace(job.setup, job.fragments, pixels).is_idle()) return;
-    for (const std::uint32_t number : numbers)
-      draw->draw(chunk.set_up.triangles[number], chunk.set_up.pieces);
+    const TriangleSource source = geometry.source_of(chunk);
+    for (const std::uint32_t number : numbers) draw->draw(chunk.set_up.triangles[number], source);
   }
 }
 

@@ -64,52 +64,34 @@ struct Corner {
   glm::dvec3 weights{0.0};
 };
 
-/// A piece's weights once its vertices are counter-clockwise.
-PieceWeights weights_of(const std::array<const Corner*, 3>& corners, bool swapped) {
-  return {corners[0]->weights, corners[swapped ? 2 : 1]->weights,
-          corners[swapped ? 1 : 2]->weights};
-}
-
-/// Bounds of the fragments' depths by those of the vertices.
-void bound_depths(const DrawSetup& setup, SetupTriangle& triangle) {
-  const auto& v = triangle.vertices;
-  const auto [least, greatest] = std::minmax({v[0].z_fx, v[1].z_fx, v[2].z_fx});
-  const int bits = depth_fraction_bits(setup.depth_format);
-  const std::int64_t half = std::int64_t{1} << (bits - 1);
-  const auto units = [&](std::int64_t value) {
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(
-        (value + triangle.depth.offset + half) >> bits, setup.depth_low, setup.depth_high));
-  };
-  triangle.least_depth = units(least - kPlaneError);
-  triangle.greatest_depth = units(greatest + kPlaneError);
-}
-
 /// Sets up one snapped triangle; false if it covers no pixel or is culled.
 bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVertex& v1,
             const ProjectedVertex& v2, SetupTriangle& out) {
   const SnappedVertex &s0 = v0.snapped, &s1 = v1.snapped, &s2 = v2.snapped;
-  const std::int64_t dx1 = s1.x_fx - s0.x_fx, dy1 = s1.y_fx - s0.y_fx;
-  const std::int64_t dx2 = s2.x_fx - s0.x_fx, dy2 = s2.y_fx - s0.y_fx;
-  const std::int64_t area = dx1 * dy2 - dx2 * dy1;
+  const std::int64_t area = doubled_area(s0, s1, s2);
   if (area == 0) return false;
   const State& state = setup.draw->state;
   out.front_facing = (area > 0) == (state.front_face == FrontFace::ccw);
   if (culled(state.cull, out.front_facing)) return false;
   const auto [x_min, x_max] = std::minmax({s0.x_fx, s1.x_fx, s2.x_fx});
   const auto [y_min, y_max] = std::minmax({s0.y_fx, s1.y_fx, s2.y_fx});
-  out.box = intersect(setup.box,
-                      {first_pixel(x_min), first_pixel(y_min), end_pixel(x_max), end_pixel(y_max)});
-  if (out.box.empty()) return false;
+  const PixelBox box = intersect(
+      setup.box, {first_pixel(x_min), first_pixel(y_min), end_pixel(x_max), end_pixel(y_max)});
+  if (box.empty()) return false;
+  out.x0 = static_cast<std::int16_t>(box.x0);
+  out.y0 = static_cast<std::int16_t>(box.y0);
+  out.x1 = static_cast<std::int16_t>(box.x1);
+  out.y1 = static_cast<std::int16_t>(box.y1);
   out.small =
       x_max - x_min < SetupTriangle::kSmall * 256 && y_max - y_min < SetupTriangle::kSmall * 256;
   out.swapped = area < 0;
-  out.area = std::abs(area);
-  const ProjectedVertex &second = out.swapped ? v2 : v1, &third = out.swapped ? v1 : v2;
-  out.vertices = {s0, second.snapped, third.snapped};
-  out.inverse_w = {v0.inverse_w, second.inverse_w, third.inverse_w};
-  out.depth = make_depth_plane(out.vertices, out.area, state.polygon_offset, setup.depth_format,
-                               setup.depth_low, setup.depth_high);
-  bound_depths(setup, out);
+  out.vertices = {s0, out.swapped ? s2 : s1, out.swapped ? s1 : s2};
+  const DepthPlane plane = make_depth_plane(out.vertices, std::abs(area), state.polygon_offset,
+                                            setup.depth_format, setup.depth_low, setup.depth_high);
+  out.step_x = plane.step_x;
+  out.step_y = plane.step_y;
+  out.narrow = plane.narrow;
+  for (SnappedVertex& vertex : out.vertices) vertex.z_fx += plane.offset;
   return true;
 }
 
@@ -148,12 +130,57 @@ void set_up_pieces(const DrawSetup& setup, const ClipVolume& volume,
     const std::array<const Corner*, 3> piece{&corners[0], &corners[i - 1], &corners[i]};
     if (!set_up(setup, piece[0]->vertex, piece[1]->vertex, piece[2]->vertex, triangle)) continue;
     triangle.piece = static_cast<std::uint32_t>(out.pieces.size());
-    out.pieces.push_back(weights_of(piece, triangle.swapped));
+    const Corner &second = *piece[triangle.swapped ? 2 : 1],
+                 &third = *piece[triangle.swapped ? 1 : 2];
+    out.pieces.push_back(
+        {{corners[0].vertex.inverse_w, second.vertex.inverse_w, third.vertex.inverse_w},
+         {corners[0].weights, second.weights, third.weights}});
     out.triangles.push_back(triangle);
   }
 }
 
 }  // namespace
+
+bool SetupTriangle::covers(int x, int y) const {
+  if (x < x0 || y < y0 || x >= x1 || y >= y1) return false;
+  for (int k = 0; k < 3; ++k) {
+    const Edge e = edge(k);
+    if (e.at(x * std::int64_t{256} + 128, y * std::int64_t{256} + 128) < e.bias()) return false;
+  }
+  return true;
+}
+
+std::uint32_t SetupTriangle::depth_at(int x, int y, const DrawSetup& setup) const {
+  const int in_x = x % kTileSize, in_y = y % kTileSize;
+  const int bits = depth_fraction_bits(setup.depth_format);
+  const std::uint64_t value = depth_base_at(vertices, area(), x - in_x, y - in_y) +
+                              static_cast<std::uint64_t>(in_x) * step_x +
+                              static_cast<std::uint64_t>(in_y) * step_y +
+                              (std::uint64_t{1} << (bits - 1));
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
+      static_cast<std::int64_t>(value) >> bits, setup.depth_low, setup.depth_high));
+}
+
+std::array<double, 3> TriangleSource::inverse_w(const SetupTriangle& triangle,
+                                                std::span<const std::uint32_t> indices) const {
+  if (triangle.piece != SetupTriangle::kWhole) return pieces[triangle.piece].inverse_w;
+  const auto of = [&](std::uint32_t corner) {
+    return vertices[indices[triangle.first_index + corner]].inverse_w;
+  };
+  return {of(0), of(triangle.swapped ? 2 : 1), of(triangle.swapped ? 1 : 2)};
+}
+
+DepthInterval vertex_depths(const SetupTriangle& triangle, const DrawSetup& setup) {
+  const auto& v = triangle.vertices;
+  const auto [least, greatest] = std::minmax({v[0].z_fx, v[1].z_fx, v[2].z_fx});
+  const int bits = depth_fraction_bits(setup.depth_format);
+  const std::int64_t half = std::int64_t{1} << (bits - 1);
+  const auto units = [&](std::int64_t value) {
+    return static_cast<std::int32_t>(
+        std::clamp<std::int64_t>((value + half) >> bits, setup.depth_low, setup.depth_high));
+  };
+  return {units(least - kPlaneError), units(greatest + kPlaneError)};
+}
 
 PixelBox intersect(const PixelBox& a, const PixelBox& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};

@@ -25,8 +25,19 @@ PixelBox intersect(const PixelBox& a, const PixelBox& b);
 /// The scissor's pixels inside a target of this size.
 PixelBox scissor_box(const std::optional<Rect>& scissor, int width, int height);
 
-/// Weights of the vertices of a piece of a clipped triangle over the mesh's triangle.
-using PieceWeights = std::array<glm::dvec3, 3>;
+/// What is interpolated over a piece of a clipped triangle: 1/w of its vertices and their weights
+/// over the mesh's triangle.
+struct Piece {
+  std::array<double, 3> inverse_w;
+  std::array<glm::dvec3, 3> weights;
+};
+
+/// Twice the signed area, positive if counter-clockwise.
+inline std::int64_t doubled_area(const SnappedVertex& a, const SnappedVertex& b,
+                                 const SnappedVertex& c) {
+  return std::int64_t{b.x_fx - a.x_fx} * (c.y_fx - a.y_fx) -
+         std::int64_t{c.x_fx - a.x_fx} * (b.y_fx - a.y_fx);
+}
 
 /// Edge k of a triangle, opposite to vertex k: E(x, y) = a (x - x0) + b (y - y0) over 24.8
 /// coordinates, positive inside; the three sum to the area. A pixel is covered where E - bias >= 0
@@ -41,41 +52,49 @@ struct Edge {
   int bias() const { return a > 0 || (a == 0 && b > 0) ? 0 : 1; }
 };
 
-/// A triangle ready for the tiles, its vertices counter-clockwise.
+/// A triangle ready for the tiles, its vertices counter-clockwise. Small, because threads hand them
+/// to each other.
 struct SetupTriangle {
   static constexpr int kSmall = 31;
   static constexpr std::uint32_t kWhole = 0xffffffff;
 
+  /// Polygon offset is part of their depths.
   std::array<SnappedVertex, 3> vertices;
-  /// Twice its area, positive.
-  std::int64_t area = 1;
-  DepthPlane depth;
-  /// Its fragments' depths lie between these, in depth units.
-  std::int32_t least_depth = 0, greatest_depth = 0;
-  PixelBox box;
+  /// Slopes of depth a pixel (raster/depth_plane.h).
+  std::uint64_t step_x = 0, step_y = 0;
   /// The mesh's triangle is at this place among its indices.
   std::uint32_t first_index = 0;
-  /// Where its weights stand among the pieces; kWhole if it is the mesh's triangle.
+  /// Its place among the pieces; kWhole if it is the mesh's triangle.
   std::uint32_t piece = kWhole;
+  std::int16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   bool front_facing = true;
   /// Its vertices lie within kSmall x kSmall pixels.
   bool small = false;
   /// Vertices 1 and 2 are the mesh's 2 and 1.
   bool swapped = false;
-  /// 1/w of the vertices.
-  std::array<double, 3> inverse_w{};
+  /// DepthPlane::narrow.
+  bool narrow = true;
+
+  /// The pixels it may cover.
+  PixelBox box() const { return {x0, y0, x1, y1}; }
+  /// Twice its area, positive.
+  std::int64_t area() const { return doubled_area(vertices[0], vertices[1], vertices[2]); }
 
   Edge edge(int k) const {
     const SnappedVertex& from = vertices[static_cast<std::size_t>((k + 1) % 3)];
     const SnappedVertex& to = vertices[static_cast<std::size_t>((k + 2) % 3)];
     return {from.y_fx - to.y_fx, to.x_fx - from.x_fx, from.x_fx, from.y_fx};
   }
+  /// The pixel's centre lies inside box and edges.
+  bool covers(int x, int y) const;
+  /// The depth that a fragment at the pixel gets.
+  std::uint32_t depth_at(int x, int y, const struct DrawSetup& setup) const;
 };
 
-/// Set-up triangles in the order of the mesh, with the weights of those that are pieces.
+/// Set-up triangles in the order of the mesh, and what is interpolated over those that are pieces.
 struct SetupTriangles {
   std::vector<SetupTriangle> triangles;
-  std::vector<PieceWeights> pieces;
+  std::vector<Piece> pieces;
 
   void clear() {
     triangles.clear();
@@ -116,6 +135,22 @@ struct DrawVertices {
     places.resize(count);
   }
 };
+
+/// Where the attributes of a chunk's triangles come from.
+struct TriangleSource {
+  std::span<const ProjectedVertex> vertices;
+  std::span<const Piece> pieces;
+
+  /// 1/w of the triangle's vertices.
+  std::array<double, 3> inverse_w(const SetupTriangle& triangle,
+                                  std::span<const std::uint32_t> indices) const;
+};
+
+/// The bounds of a triangle's depths by those of its vertices, in depth units.
+struct DepthInterval {
+  std::int32_t least, greatest;
+};
+DepthInterval vertex_depths(const SetupTriangle& triangle, const DrawSetup& setup);
 
 /// Fills places and projected of vertices [first, last) from their clip-space positions.
 void project_vertices(const DrawSetup& setup, DrawVertices& vertices, std::size_t first,

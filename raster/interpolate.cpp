@@ -5,19 +5,20 @@ namespace gnomon::raster {
 namespace {
 
 /// Perspective-correct weights of the mesh triangle's three vertices.
-glm::vec3 vertex_weights(const SetupTriangle& triangle, std::span<const PieceWeights> pieces, int x,
-                         int y) {
+glm::vec3 vertex_weights(const Draw& draw, const SetupTriangle& triangle,
+                         const TriangleSource& source, int x, int y) {
   const std::int64_t x_fx = x * std::int64_t{256} + 128, y_fx = y * std::int64_t{256} + 128;
-  const double area = static_cast<double>(triangle.area);
+  const double area = static_cast<double>(triangle.area());
+  const std::array<double, 3> inverse_w = source.inverse_w(triangle, draw.mesh.indices);
   std::array<double, 3> q;
   for (std::size_t k = 0; k < 3; ++k)
     q[k] = static_cast<double>(triangle.edge(static_cast<int>(k)).at(x_fx, y_fx)) *
-           (triangle.inverse_w[k] / area);
+           (inverse_w[k] / area);
   const double inverse = 1.0 / ((q[0] + q[1]) + q[2]);
   const double w0 = q[0] * inverse, w1 = q[1] * inverse, w2 = q[2] * inverse;
   if (triangle.piece == SetupTriangle::kWhole)
     return triangle.swapped ? glm::vec3(w0, w2, w1) : glm::vec3(w0, w1, w2);
-  const PieceWeights& weights = pieces[triangle.piece];
+  const auto& weights = source.pieces[triangle.piece].weights;
   return glm::vec3((weights[0] * w0 + weights[1] * w1) + weights[2] * w2);
 }
 
@@ -42,8 +43,8 @@ glm::vec3 world_position(const glm::mat4& m, const glm::vec4& p) {
 
 }  // namespace
 
-Fragment interpolate(const Draw& draw, const SetupTriangle& triangle,
-                     std::span<const PieceWeights> pieces, int x, int y) noexcept {
+Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, const TriangleSource& source,
+                     int x, int y) noexcept {
   Fragment fragment;
   fragment.front_facing = triangle.front_facing;
   const MeshView& mesh = draw.mesh;
@@ -51,7 +52,7 @@ Fragment interpolate(const Draw& draw, const SetupTriangle& triangle,
   const Flat* flat = std::get_if<Flat>(&draw.shading);
   if (flat && mesh.colors.empty() && !flat->texture && !flat->depth_lookup) return fragment;
 
-  const glm::vec3 p = vertex_weights(triangle, pieces, x, y);
+  const glm::vec3 p = vertex_weights(draw, triangle, source, x, y);
   const std::uint32_t* index = mesh.indices.data() + triangle.first_index;
   if (!mesh.colors.empty()) fragment.color = weighted(mesh.colors, index, p);
   if (!mesh.texcoords.empty()) fragment.texcoord = weighted(mesh.texcoords, index, p);

@@ -10,8 +10,8 @@
 
 namespace gnomon::raster {
 
-/// Precondition: the triangle covers pixel (x, y); `pieces` are those of its SetupTriangles.
-Fragment interpolate(const Draw& draw, const SetupTriangle& triangle,
-                     std::span<const PieceWeights> pieces, int x, int y) noexcept;
+/// Precondition: the triangle covers pixel (x, y); `source` is that of its chunk.
+Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, const TriangleSource& source,
+                     int x, int y) noexcept;
 
 }  // namespace gnomon::raster

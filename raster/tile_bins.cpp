@@ -47,7 +47,7 @@ void TileBins::add(int tile_x, int tile_y, std::uint32_t number) {
 }
 
 void TileBins::walk(const SetupTriangle& triangle, std::uint32_t number) {
-  const PixelBox& box = triangle.box;
+  const PixelBox box = triangle.box();
   const int x0 = box.x0 / kTileSize, x1 = (box.x1 - 1) / kTileSize;
   const int y0 = box.y0 / kTileSize, y1 = (box.y1 - 1) / kTileSize;
   const EdgeInRows edges[3] = {EdgeInRows(triangle.edge(0)), EdgeInRows(triangle.edge(1)),
@@ -61,9 +61,11 @@ void TileBins::walk(const SetupTriangle& triangle, std::uint32_t number) {
 
 void TileBins::fill(std::span<const SetupTriangle> triangles) {
   PixelBox all{kMaxTargetSize, kMaxTargetSize, 0, 0};
-  for (const SetupTriangle& triangle : triangles)
-    all = {std::min(all.x0, triangle.box.x0), std::min(all.y0, triangle.box.y0),
-           std::max(all.x1, triangle.box.x1), std::max(all.y1, triangle.box.y1)};
+  for (const SetupTriangle& triangle : triangles) {
+    const PixelBox box = triangle.box();
+    all = {std::min(all.x0, box.x0), std::min(all.y0, box.y0), std::max(all.x1, box.x1),
+           std::max(all.y1, box.y1)};
+  }
   x0_ = all.x0 / kTileSize;
   y0_ = all.y0 / kTileSize;
   width_ = triangles.empty() ? 0 : (all.x1 - 1) / kTileSize + 1 - x0_;
@@ -71,7 +73,7 @@ void TileBins::fill(std::span<const SetupTriangle> triangles) {
 
   touches_.clear();
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    const PixelBox& box = triangles[i].box;
+    const PixelBox box = triangles[i].box();
     const int x = box.x0 / kTileSize, y = box.y0 / kTileSize;
     if (x == (box.x1 - 1) / kTileSize && y == (box.y1 - 1) / kTileSize)
       add(x, y, i);

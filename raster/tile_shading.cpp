@@ -95,11 +95,12 @@ std::optional<DrawShading> make_draw_shading(const Draw& draw) {
 }
 
 TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
-                              const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
-                              int x, int y) {
+                              const SetupTriangle& triangle, const TriangleSource& source, int x,
+                              int y) {
   TileShading out;
   TileWeights& weights = out.weights;
-  const double area = static_cast<double>(triangle.area);
+  const double area = static_cast<double>(triangle.area());
+  const std::array<double, 3> inverse_w = source.inverse_w(triangle, draw.mesh.indices);
   weights.is_piece = triangle.piece != SetupTriangle::kWhole;
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(k);
@@ -108,11 +109,11 @@ TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
         static_cast<double>(edge.at(x * std::int64_t{256} + 128, y * std::int64_t{256} + 128));
     weights.step_x[i] = 256.0 * edge.a;
     weights.step_y[i] = 256.0 * edge.b;
-    weights.scale[i] = triangle.inverse_w[i] / area;
+    weights.scale[i] = inverse_w[i] / area;
     weights.order[i] = triangle.swapped && k > 0 ? 3 - k : k;
     if (weights.is_piece)
       for (int v = 0; v < 3; ++v)
-        weights.piece[i][static_cast<std::size_t>(v)] = pieces[triangle.piece][i][v];
+        weights.piece[i][static_cast<std::size_t>(v)] = source.pieces[triangle.piece].weights[i][v];
   }
   out.lit = shading.lit ? &*shading.lit : nullptr;
   if (const Flat* flat = std::get_if<Flat>(&draw.shading)) copy(flat->color, out.flat_color);

@@ -25,7 +25,7 @@ std::optional<DrawShading> make_draw_shading(const Draw& draw);
 
 /// A triangle's shading in the tile whose first pixel is (x, y).
 TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
-                              const SetupTriangle& triangle, std::span<const PieceWeights> pieces,
-                              int x, int y);
+                              const SetupTriangle& triangle, const TriangleSource& source, int x,
+                              int y);
 
 }  // namespace gnomon::raster

@@ -103,30 +103,24 @@ double length_inside(const glm::dvec2& a, const glm::dvec2& b, int width, int he
   return std::max(0.0, last - first) * glm::length(along);
 }
 
-bool covers(const SetupTriangle& triangle, int x, int y) {
-  for (int k = 0; k < 3; ++k)
-    if (triangle.edge(k, 256 * std::int64_t{x} + 128, 256 * std::int64_t{y} + 128) <
-        triangle.bias[static_cast<std::size_t>(k)])
-      return false;
-  return true;
-}
-
 void collect_layers(const DrawSetup& setup, const std::vector<glm::vec4>& clip,
                     std::vector<Site>& sites) {
-  std::vector<SetupTriangle> triangles;
-  set_up_triangles(setup, clip, 0, setup.draw->mesh.indices.size() / 3, triangles);
+  DrawVertices vertices;
+  vertices.resize(clip.size());
+  vertices.clip = clip;
+  project_vertices(setup, vertices, 0, clip.size());
+  SetupTriangles set_up;
+  set_up_triangles(setup, vertices, 0, setup.draw->mesh.indices.size() / 3, set_up);
   const auto signed_units = [](std::uint64_t value) {
     return static_cast<double>(static_cast<std::int64_t>(value)) / 256.0;
   };
-  for (const SetupTriangle& t : triangles)
+  for (const SetupTriangle& t : set_up.triangles)
     for (Site& site : sites) {
-      if (site.x < t.box.x0 || site.y < t.box.y0 || site.x >= t.box.x1 || site.y >= t.box.y1 ||
-          !covers(t, site.x, site.y))
-        continue;
-      const double slope =
-          std::abs(signed_units(t.depth.step_x)) + std::abs(signed_units(t.depth.step_y));
-      const double depth = std::clamp(signed_units(t.depth.base_at(site.x, site.y)), 0.0,
-                                      static_cast<double>(setup.depth_high));
+      if (!t.covers(site.x, site.y)) continue;
+      const double slope = std::abs(signed_units(t.step_x)) + std::abs(signed_units(t.step_y));
+      const std::uint64_t value = depth_base_at(t.vertices, t.area(), site.x, site.y);
+      const double depth =
+          std::clamp(signed_units(value), 0.0, static_cast<double>(setup.depth_high));
       site.layers.push_back({depth, slope / 256.0});
     }
 }

@@ -9,9 +9,9 @@
 #include "llvmpipe_blend.h"
 #include "llvmpipe_model.h"
 #include "raster/blend.h"
+#include "raster/draw_tile.h"
 #include "raster/geometry.h"
 #include "raster/kernels.h"
-#include "raster/tile.h"
 #include "raster/unorm.h"
 
 namespace gnomon::peer {
@@ -96,7 +96,7 @@ class Pixel {
   /// Calls reach(state after it, fate) for each outcome.
   template <class Reach>
   void run(const Fragment& fragment, const PixelState& state, const Reach& reach) const {
-    const FragmentTests& tests = fragment.front ? setup_.front : setup_.back;
+    const FragmentTests& tests = (fragment.front ? setup_.front : setup_.back).tests;
     PixelState failed = state;
     if (!test(tests, CompareFunc::always, failed.stencil)) {
       reach(failed, Fate::stencil_fail);
@@ -130,7 +130,10 @@ class Pixel {
     std::array<std::uint32_t, kPixelsPerBlock> depths{};
     std::array<std::uint8_t, kPixelsPerBlock> stencils{};
     stencils[0] = stencil;
-    const bool passed = scalar_kernels().test_block(tests, 1, {}, depths.data(), stencils.data());
+    PixelMask pixel = 1;
+    const bool passed =
+        scalar_kernels().test_blocks(
+            tests, {.blocks = 1, .depth = depths.data(), .stencil = stencils.data()}, &pixel) != 0;
     stencil = stencils[0];
     return passed;
   }
@@ -148,25 +151,6 @@ class Pixel {
   const Rgba8 source_;
 };
 
-bool covers(const SetupTriangle& t, int x, int y) {
-  if (x < t.box.x0 || y < t.box.y0 || x >= t.box.x1 || y >= t.box.y1) return false;
-  for (int k = 0; k < 3; ++k)
-    if (t.edge(k, 256 * std::int64_t{x} + 128, 256 * std::int64_t{y} + 128) <
-        t.bias[static_cast<std::size_t>(k)])
-      return false;
-  return true;
-}
-
-/// gnomon's depth at a pixel (raster/depth_plane.h).
-std::uint32_t own_depth(const SetupTriangle& t, const DrawSetup& setup, int x, int y) {
-  const int in_x = x % kTileSize, in_y = y % kTileSize;
-  const std::uint64_t value = t.depth.base_at(x - in_x, y - in_y) +
-                              static_cast<std::uint64_t>(in_x) * t.depth.step_x +
-                              static_cast<std::uint64_t>(in_y) * t.depth.step_y + 128;
-  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(static_cast<std::int64_t>(value) >> 8,
-                                                             setup.depth_low, setup.depth_high));
-}
-
 bool culled(const State& state, bool front) {
   return state.cull == Cull::front_and_back || (state.cull == Cull::front && front) ||
          (state.cull == Cull::back && !front);
@@ -180,14 +164,17 @@ class Geometry {
         setup_(make_draw_setup(draw, targets)),
         height_(targets.height()),
         rounding_(driver == Driver::llvmpipe ? DepthRounding::nearest : DepthRounding::down) {
-    std::vector<glm::vec4> clip(draw.mesh.positions.size());
+    DrawVertices vertices;
+    vertices.resize(draw.mesh.positions.size());
+    std::vector<glm::vec4>& clip = vertices.clip;
     scalar_kernels().transform(draw.clip_from_model, draw.mesh.positions.data(), clip.size(),
                                clip.data());
+    project_vertices(setup_, vertices, 0, clip.size());
     for (std::size_t t = 0; t < draw.mesh.indices.size() / 3; ++t) {
       const auto index = draw.mesh.indices.subspan(3 * t, 3);
-      std::vector<SetupTriangle> pieces;
-      set_up_triangles(setup_, clip, t, 1, pieces);
-      Both both{std::move(pieces),
+      SetupTriangles pieces;
+      set_up_triangles(setup_, vertices, t, 1, pieces);
+      Both both{std::move(pieces.triangles),
                 clipped_outline(setup_, {clip[index[0]], clip[index[1]], clip[index[2]]}, height_),
                 {}};
       both.snap_only = both.outline;
@@ -218,12 +205,12 @@ class Geometry {
     const std::optional<PolygonOffset>& offset = draw_.state.polygon_offset;
     const double factor = offset ? std::abs(static_cast<double>(offset->factor)) : 0.0;
     return std::all_of(both.pieces.begin(), both.pieces.end(), [&](const SetupTriangle& piece) {
-      if (!covers(piece, x, y)) return true;
-      const double slope = std::max(units(piece.depth.step_x), units(piece.depth.step_y));
+      if (!piece.covers(x, y)) return true;
+      const double slope = std::max(units(piece.step_x), units(piece.step_y));
       const double apart =
           std::max(std::abs(slope - bounds.slope_low), std::abs(slope - bounds.slope_high));
       const double slack = bounds.slack + (factor > 0.0 ? factor * apart : 0.0);
-      const double depth = own_depth(piece, setup_, x, y);
+      const double depth = piece.depth_at(x, y, setup_);
       return depth >= bounds.low - slack && depth <= bounds.high + slack;
     });
   }
@@ -236,8 +223,8 @@ class Geometry {
   Site site(const Both& both, int x, int y) const {
     Site site;
     for (const SetupTriangle& piece : both.pieces) {
-      if (!covers(piece, x, y)) continue;
-      const std::uint32_t depth = own_depth(piece, setup_, x, y);
+      if (!piece.covers(x, y)) continue;
+      const std::uint32_t depth = piece.depth_at(x, y, setup_);
       site.own.push_back({piece.front_facing, depth, depth});
     }
     const glm::dvec2 center(x + 0.5, y + 0.5);
