@@ -60,8 +60,14 @@ class Recorder {
   LightVolumes volumes_of(const Light& light, const Receivers& receivers,
                           const std::optional<NearRegion>& region) const {
     LightVolumes result;
-    for (PlacedVolume& volume :
-         make_volumes(objects_, light, receivers, region, {options_.method, options_.extrusion})) {
+    // The second step counts the volumes of virtual objects on the phantoms alone.
+    for (PlacedVolume& volume : make_volumes(objects_, light, receivers, region,
+                                             {.method = options_.method,
+                                             .extrusion = options_.extrusion,
+                                             .all_caps = options_.all_caps,
+                                             .counted_before_drawn = Role::virtual_object,
+                                             .threads = options_.threads,
+                                             .memory = options_.volumes})) {
       const bool real = volume.caster->role == Role::phantom;
       (real ? result.real : result.virtual_).push_back(std::move(volume));
     }
@@ -84,6 +90,7 @@ class Recorder {
     count_volumes(frame_, volumes,
                   {.appendix_letter = options_.appendix_letter,
                    .write_mask = write_mask,
+                   .casters_drawn = virtual_objects_drawn_ && !options_.all_caps,
                    .light_name = light.name});
   }
 
@@ -188,6 +195,7 @@ class Recorder {
   /// leaves alpha 1 where one is visible: exactly there, whatever alpha a texture has.
   void draw_virtual_lit(const LightTerms& terms) {
     begin(haller_label::kVirtualLit);
+    virtual_objects_drawn_ = true;
     frame_.clear({.stencil = 0});
     raster::State state = surface_state();
     state.depth = raster::DepthState{};
@@ -276,6 +284,7 @@ class Recorder {
   std::vector<LightVolumes> volumes_;
   std::shared_ptr<const raster::Texture> texture_;
   raster::Frame frame_;
+  bool virtual_objects_drawn_ = false;
 };
 
 }  // namespace

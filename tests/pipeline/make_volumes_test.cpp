@@ -1,0 +1,187 @@
+// What is left out of volumes, against the plain method that leaves out nothing.
+#include "pipeline/make_volumes.h"
+
+#include <array>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include "pipeline/general_method.h"
+#include "pipeline/haller.h"
+#include "raster/execute.h"
+#include "tests/pipeline/stencil_check.h"
+#include "tests/pipeline/test_meshes.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+
+Extrusion extrusion_of(int scene) {
+  switch (scene % 3) {
+    case 0:
+      return {.kind = Extrusion::Kind::infinite};
+    case 1:
+      return {.kind = Extrusion::Kind::automatic};
+    default:
+      return {.kind = Extrusion::Kind::radius, .radius_m = 3.0f};
+  }
+}
+
+/// Every other scene has open sheets and boxes without a side among its bodies.
+Scene random_scene(int number, std::mt19937& random) {
+  Scene scene = test::random_scene(random);
+  if (number % 2 == 0) return scene;
+  Mesh open_box = test::box_mesh({0.5f, 0.5f, 0.5f});
+  open_box.indices.resize(30);
+  scene.objects[1].model = test::model_of(test::square_mesh(0.6f));
+  scene.objects.back().model = test::model_of(open_box);
+  return scene;
+}
+
+/// Anywhere, in shadows and in bodies too; every fourth with the far plane at infinity, every
+/// fourth with one that cuts the scene.
+Camera random_camera(int number, std::mt19937& random) {
+  glm::vec3 eye = test::uniform_point(random, -4.0f, 4.0f);
+  eye.y = test::uniform(random, 0.1f, 4.0f);
+  const float far = number % 4 == 1 ? 5.0f : 60.0f;
+  Camera camera =
+      test::look(eye, test::uniform_point(random, -1.0f, 1.0f), kWidth, kHeight, 60.0f, 0.05f, far);
+  if (number % 4 == 0) {
+    for (int column = 0; column < 4; ++column) {
+      camera.clip_from_world[column][2] = camera.clip_from_world[column][3];
+    }
+    camera.clip_from_world[3][2] -= 2.0f * 0.05f;
+  }
+  return camera;
+}
+
+std::size_t indices_of(const Scene& scene, const Camera& camera, const VolumeOptions& options) {
+  TopologyCache topologies;
+  const std::vector<PlacedObject> objects = place_objects(scene, camera, topologies);
+  std::size_t sum = 0;
+  for (const PlacedVolume& volume :
+       make_volumes(objects, scene.lights[0], Receivers(scene), {}, options)) {
+    sum += volume.volume->indices.size();
+  }
+  return sum;
+}
+
+// Oracle: the same volumes with both caps.
+TEST(Caps, LeftOutOfZPassChangeNoByteOfTheStencil) {
+  std::mt19937 random(20050);
+  std::size_t counted = 0, with_caps = 0, without = 0;
+  for (int i = 0; i < 240; ++i) {
+    const Scene scene = random_scene(i, random);
+    const Camera camera = random_camera(i, random);
+    VolumeOptions options{.method = VolumeMethod::zpass, .extrusion = extrusion_of(i)};
+    const test::Counted sides = test::count_scene(scene, camera, options);
+    without += indices_of(scene, camera, options);
+    options.all_caps = true;
+    const test::Counted plain = test::count_scene(scene, camera, options);
+    with_caps += indices_of(scene, camera, options);
+    ASSERT_EQ(sides.stencil.to_rows(), plain.stencil.to_rows()) << "scene " << i;
+    for (const std::uint8_t value : plain.stencil.to_rows()) counted += value != 0;
+  }
+  std::printf("z-pass: %zu pixels with a count, %zu triangles with caps, %zu without\n", counted,
+              with_caps / 3, without / 3);
+  EXPECT_GT(counted, 100000u);
+  EXPECT_LT(without, with_caps * 2 / 3);
+}
+
+struct Buffers {
+  raster::ColorBuffer color{kWidth, kHeight}, masks{kWidth, kHeight};
+  raster::DepthBuffer depth{kWidth, kHeight};
+  raster::StencilBuffer stencil{kWidth, kHeight};
+  std::vector<std::uint8_t> photograph = std::vector<std::uint8_t>(3 * kWidth * kHeight, 200);
+
+  raster::Targets targets() { return {&color, &depth, &stencil}; }
+  void haller(const Scene& scene, const Camera& camera, HallerOptions options) {
+    options.masks = &masks;
+    raster::execute(record_haller(
+        scene, camera, raster::ImageView::from_top_row(photograph.data(), kWidth, kHeight, 3),
+        targets(), options));
+  }
+  void general(const Scene& scene, const Camera& camera, const GeneralOptions& options) {
+    raster::execute(record_general(scene, camera, targets(), options));
+  }
+  bool same_picture(const Buffers& other) const {
+    return color.to_rgba8_rows() == other.color.to_rgba8_rows() &&
+           masks.to_rgba8_rows() == other.masks.to_rgba8_rows() &&
+           depth.to_rows() == other.depth.to_rows();
+  }
+};
+
+// Oracle: the same methods with both caps. Haller's second step counts volumes of casters that are
+// not drawn yet: their front caps must have stayed.
+TEST(Caps, LeftOutOfTheMethodsChangeNoByteOfAnyBuffer) {
+  std::mt19937 random(20051);
+  for (int i = 0; i < 60; ++i) {
+    Scene scene = random_scene(i, random);
+    if (i % 3 == 0) {
+      scene.lights.push_back({.name = "second", .position = {-1.0f, 5.0f, 2.0f, 1.0f}});
+    }
+    const Camera camera = random_camera(i, random);
+    const auto method = i % 2 ? VolumeMethod::zpass : VolumeMethod::automatic;
+    Buffers lean, plain;
+    HallerOptions haller{.method = method, .extrusion = extrusion_of(i / 2)};
+    haller.double_shadows = i % 5 == 0;
+    lean.haller(scene, camera, haller);
+    haller.all_caps = true;
+    plain.haller(scene, camera, haller);
+    ASSERT_TRUE(lean.same_picture(plain)) << "Haller, scene " << i;
+    ASSERT_EQ(lean.stencil.to_rows(), plain.stencil.to_rows()) << "Haller, scene " << i;
+    GeneralOptions general{.method = method, .extrusion = extrusion_of(i / 2)};
+    lean.general(scene, camera, general);
+    general.all_caps = true;
+    plain.general(scene, camera, general);
+    ASSERT_TRUE(lean.same_picture(plain)) << "general method, scene " << i;
+    ASSERT_EQ(lean.stencil.to_rows(), plain.stencil.to_rows()) << "general method, scene " << i;
+  }
+}
+
+// Oracle: volumes made on one thread, in memory of their own.
+TEST(MakeVolumes, AreTheSameForEveryNumberOfThreadsAndInMemoryThatWasUsed) {
+  std::mt19937 random(20052);
+  VolumeMemory memory;
+  std::shared_ptr<const ShadowVolume> kept;
+  std::vector<glm::vec4> kept_positions;
+  for (int i = 0; i < 30; ++i) {
+    Scene scene = random_scene(i, random);
+    const std::vector<Object> objects = scene.objects;
+    for (int copies = 0; copies < 4; ++copies) {
+      scene.objects.insert(scene.objects.end(), objects.begin(), objects.end());
+    }
+    const Camera camera = random_camera(i, random);
+    TopologyCache topologies;
+    const std::vector<PlacedObject> placed = place_objects(scene, camera, topologies);
+    const auto make = [&](int threads, VolumeMemory* with) {
+      return make_volumes(placed, scene.lights[0], Receivers(scene),
+                          near_region(camera.clip_from_world),
+                          {.extrusion = extrusion_of(i), .threads = threads, .memory = with});
+    };
+    const std::vector<PlacedVolume> expected = make(1, nullptr);
+    for (const int threads : {1, 2, 3, 7}) {
+      const std::vector<PlacedVolume> got = make(threads, &memory);
+      ASSERT_EQ(got.size(), expected.size());
+      for (std::size_t k = 0; k < got.size(); ++k) {
+        ASSERT_EQ(got[k].caster, expected[k].caster);
+        ASSERT_EQ(got[k].method, expected[k].method);
+        ASSERT_EQ(got[k].volume->positions, expected[k].volume->positions);
+        ASSERT_EQ(got[k].volume->indices, expected[k].volume->indices);
+      }
+    }
+    // What is still held keeps its content, however often the memory was used since.
+    if (kept) {
+      ASSERT_EQ(kept->positions, kept_positions);
+    }
+    const std::vector<PlacedVolume> last = make(2, &memory);
+    ASSERT_FALSE(last.empty());
+    kept = last[0].volume;
+    kept_positions = kept->positions;
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::pipeline
