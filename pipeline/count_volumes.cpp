@@ -16,6 +16,7 @@ raster::Draw counting_draw(const PlacedVolume& volume, const CountOptions& optio
   draw.state.depth = raster::DepthState{.func = raster::CompareFunc::less, .write = false};
   draw.state.color = raster::ColorState::off();
   draw.state.front_face = volume.front_face;
+  draw.state.scissor = volume.window;
   const bool front_cap = !options.casters_drawn || volume.method != VolumeMethod::zpass;
   draw.mesh = front_cap ? volume.volume->view() : volume.volume->view_without_front_cap();
   draw.clip_from_model = volume.clip_from_model;

@@ -14,6 +14,9 @@ struct GeneralOptions {
   Extrusion extrusion;
   /// As VolumeOptions::all_caps.
   bool all_caps = false;
+  /// With at_receivers the picture is the same and the stencil may differ. Saturating counts
+  /// (appendix_letter) depend on what else is counted: they are always taken everywhere.
+  Counts counts = Counts::everywhere;
   /// Culled single-sided draws and saturating operations (appendix A).
   bool appendix_letter = false;
   glm::vec4 background{0.0f, 0.0f, 0.0f, 1.0f};

@@ -38,9 +38,12 @@ class Recorder {
     TopologyCache own_topologies;
     objects_ =
         place_objects(scene, camera, options.topologies ? *options.topologies : own_topologies);
-    const Receivers receivers(scene);
+    const VolumeOptions volume_options = make_volume_options();
+    const Receivers receivers = receivers_for(volume_options, scene);
     const std::optional<NearRegion> region = near_region(camera.clip_from_world);
-    for (const Light& light : lights_) volumes_.push_back(volumes_of(light, receivers, region));
+    for (const Light& light : lights_) {
+      volumes_.push_back(volumes_of(light, receivers, region, volume_options));
+    }
     if (lights_.size() > 1) texture_ = photograph_texture(photograph);
   }
 
@@ -57,17 +60,24 @@ class Recorder {
   }
 
  private:
+  VolumeOptions make_volume_options() const {
+    return {.method = options_.method,
+            .extrusion = options_.extrusion,
+            .all_caps = options_.all_caps,
+            // The second step counts their volumes on the phantoms alone.
+            .counted_before_drawn = Role::virtual_object,
+            .counts = options_.appendix_letter ? Counts::everywhere : options_.counts,
+            .view = View{camera_.clip_from_world, targets_.width(), targets_.height(),
+                         targets_.depth->format()},
+            .threads = options_.threads,
+            .memory = options_.volumes};
+  }
+
   LightVolumes volumes_of(const Light& light, const Receivers& receivers,
-                          const std::optional<NearRegion>& region) const {
+                          const std::optional<NearRegion>& region,
+                          const VolumeOptions& options) const {
     LightVolumes result;
-    // The second step counts the volumes of virtual objects on the phantoms alone.
-    for (PlacedVolume& volume : make_volumes(objects_, light, receivers, region,
-                                             {.method = options_.method,
-                                             .extrusion = options_.extrusion,
-                                             .all_caps = options_.all_caps,
-                                             .counted_before_drawn = Role::virtual_object,
-                                             .threads = options_.threads,
-                                             .memory = options_.volumes})) {
+    for (PlacedVolume& volume : make_volumes(objects_, light, receivers, region, options)) {
       const bool real = volume.caster->role == Role::phantom;
       (real ? result.real : result.virtual_).push_back(std::move(volume));
     }

@@ -17,6 +17,9 @@ struct HallerOptions {
   Extrusion extrusion;
   /// As VolumeOptions::all_caps.
   bool all_caps = false;
+  /// With at_receivers the picture is the same and the stencil may differ. Saturating counts
+  /// (appendix_letter) depend on what else is counted: they are always taken everywhere.
+  Counts counts = Counts::everywhere;
   /// The paper to the letter: virtual shadows darken real surfaces also where the photograph shows
   /// them in a real object's shadow already.
   bool double_shadows = false;

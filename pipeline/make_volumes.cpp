@@ -42,7 +42,17 @@ std::vector<WorldTriangle> casting_triangles(const PlacedObject& object,
   return triangles;
 }
 
-/// How far, without an amount: to infinity.
+/// Are volumes made for the pixels of visible receivers alone?
+bool makes_windows(const VolumeOptions& options) {
+  return options.counts == Counts::at_receivers && options.view &&
+         options.extrusion.kind != Extrusion::Kind::radius;
+}
+
+bool needs_reach(const VolumeOptions& options) {
+  return options.extrusion.kind == Extrusion::Kind::automatic && !makes_windows(options);
+}
+
+/// How far a silhouette is swept.
 struct Sweep {
   enum class Kind : std::uint8_t { nowhere, infinite, amount, radius };
   Kind kind = Kind::infinite;
@@ -50,14 +60,10 @@ struct Sweep {
 };
 
 Sweep sweep_of(const Extrusion& extrusion, const std::optional<Reach>& reach) {
-  switch (extrusion.kind) {
-    case Extrusion::Kind::radius:
-      return {Sweep::Kind::radius, static_cast<double>(extrusion.radius_m)};
-    case Extrusion::Kind::infinite:
-      return {Sweep::Kind::infinite};
-    case Extrusion::Kind::automatic:
-      break;
+  if (extrusion.kind == Extrusion::Kind::radius) {
+    return {Sweep::Kind::radius, static_cast<double>(extrusion.radius_m)};
   }
+  if (!reach) return {Sweep::Kind::infinite};
   if (reach->kind == Reach::Kind::none) return {Sweep::Kind::nowhere};
   if (reach->kind == Reach::Kind::unbounded) return {Sweep::Kind::infinite};
   return {Sweep::Kind::amount, reach->amount};
@@ -72,9 +78,11 @@ Caps caps_for(const PlacedObject& object, VolumeMethod method, const Sweep& swee
 
 class Maker {
  public:
-  Maker(const Light& light, const Receivers& receivers, const std::optional<NearRegion>& region,
-        const VolumeOptions& options)
-      : light_(light), receivers_(receivers), region_(region), options_(options) {}
+  Maker(std::span<const PlacedObject> objects, const Light& light, const Receivers& receivers,
+        const std::optional<NearRegion>& region, const VolumeOptions& options)
+      : light_(light), receivers_(receivers), region_(region), options_(options) {
+    if (makes_windows(options)) in_view_.emplace(objects, *options.view);
+  }
 
   /// Fills `placed` and `volume`; leaves `placed.volume` null where there is none.
   void make(const PlacedObject& object, VolumeMemory::Worker& worker,
@@ -82,29 +90,18 @@ class Maker {
     const Topology& topology = *object.topology;
     const glm::mat4& world_from_model = object.object->world_from_model;
     const glm::dvec4 light_model = light_in_model(light_.position, world_from_model);
+    placed.method =
+        choose_method(options_.method, region_, light_.position, topology, world_from_model);
+    if (in_view_ && !find_window(object, placed)) return;
     Silhouette& silhouette = worker.silhouette;
     find_silhouette(topology, light_model, silhouette);
-    if (options_.extrusion.kind == Extrusion::Kind::automatic) {
+    if (needs_reach(options_)) {
       placed.reach = find_reach(light_.position, casting_triangles(object, silhouette), receivers_);
     }
     const Sweep sweep = sweep_of(options_.extrusion, placed.reach);
     if (sweep.kind == Sweep::Kind::nowhere) return;
-    placed.method =
-        choose_method(options_.method, region_, light_.position, topology, world_from_model);
     const Caps caps = caps_for(object, placed.method, sweep, options_);
-    VolumeBuilder& builder = worker.builder;
-    switch (sweep.kind) {
-      case Sweep::Kind::radius:
-        builder.extrude_by_radius(topology, silhouette, light_model, world_from_model, sweep.amount,
-                                  caps, *volume);
-        break;
-      case Sweep::Kind::amount:
-        builder.extrude_by(topology, silhouette, light_model, sweep.amount, caps, *volume);
-        break;
-      default:
-        builder.extrude_to_infinity(topology, silhouette, light_model, caps, *volume);
-        break;
-    }
+    extrude(object, light_model, sweep, caps, worker, *volume);
     if (volume->empty()) return;
     placed.volume = std::move(volume);
     placed.caster = object.object;
@@ -113,10 +110,46 @@ class Maker {
   }
 
  private:
+  /// False: the volume is not needed.
+  bool find_window(const PlacedObject& object, PlacedVolume& placed) const {
+    const Topology& topology = *object.topology;
+    const glm::mat4& world_from_model = object.object->world_from_model;
+    // Depth pass with the eye in a volume counts wrongly, and everywhere; so does the plain method.
+    const bool sound =
+        placed.method != VolumeMethod::zpass || options_.method == VolumeMethod::automatic ||
+        (region_ && !volume_may_touch(*region_, light_.position, topology, world_from_model));
+    if (!sound) return true;
+    const raster::Rect window = in_view_->window_of(light_.position, topology, world_from_model);
+    if (window.width == 0) return false;
+    const View& view = *options_.view;
+    if (window != raster::Rect{0, 0, view.width, view.height}) placed.window = window;
+    return true;
+  }
+
+  static void extrude(const PlacedObject& object, const glm::dvec4& light_model, const Sweep& sweep,
+                      Caps caps, VolumeMemory::Worker& worker, ShadowVolume& volume) {
+    const Topology& topology = *object.topology;
+    const Silhouette& silhouette = worker.silhouette;
+    switch (sweep.kind) {
+      case Sweep::Kind::radius:
+        worker.builder.extrude_by_radius(topology, silhouette, light_model,
+                                         object.object->world_from_model, sweep.amount, caps,
+                                         volume);
+        break;
+      case Sweep::Kind::amount:
+        worker.builder.extrude_by(topology, silhouette, light_model, sweep.amount, caps, volume);
+        break;
+      default:
+        worker.builder.extrude_to_infinity(topology, silhouette, light_model, caps, volume);
+        break;
+    }
+  }
+
   const Light& light_;
   const Receivers& receivers_;
   const std::optional<NearRegion>& region_;
   const VolumeOptions& options_;
+  std::optional<ReceiversInView> in_view_;
 };
 
 }  // namespace
@@ -140,6 +173,10 @@ std::vector<std::shared_ptr<ShadowVolume>> VolumeMemory::volumes(std::size_t cou
   return taken;
 }
 
+Receivers receivers_for(const VolumeOptions& options, const Scene& scene) {
+  return needs_reach(options) ? Receivers(scene) : Receivers();
+}
+
 std::vector<PlacedVolume> make_volumes(std::span<const PlacedObject> objects, const Light& light,
                                        const Receivers& receivers,
                                        const std::optional<NearRegion>& region,
@@ -154,7 +191,7 @@ std::vector<PlacedVolume> make_volumes(std::span<const PlacedObject> objects, co
   const std::span<VolumeMemory::Worker> workers =
       memory.workers((casters.size() + kChunk - 1) / kChunk);
   std::vector<PlacedVolume> placed(casters.size());
-  const Maker maker(light, receivers, region, options);
+  const Maker maker(objects, light, receivers, region, options);
   raster::for_each_chunk(
       casters.size(), kChunk, options.threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {

@@ -15,6 +15,7 @@
 #include "pipeline/placed_object.h"
 #include "pipeline/receivers.h"
 #include "pipeline/shadow_volume.h"
+#include "pipeline/volume_window.h"
 
 namespace gnomon::pipeline {
 
@@ -37,6 +38,8 @@ struct PlacedVolume {
   VolumeMethod method = VolumeMethod::zfail;
   /// What the automatic extrusion took; absent for the others.
   std::optional<Reach> reach;
+  /// The counts' scissor; absent: the whole target.
+  std::optional<raster::Rect> window;
 };
 
 /// Memory that make_volumes uses again, kept between frames: the builders, and the volumes that no
@@ -57,6 +60,16 @@ class VolumeMemory {
   std::vector<std::shared_ptr<ShadowVolume>> volumes_;
 };
 
+/// At which pixels the stencil is the plain method's after the counts (closed volumes to infinity,
+/// or of Extrusion's length, for all casters).
+enum class Counts : std::uint8_t {
+  everywhere,
+  /// Where a receiver is visible; elsewhere it may be any number. Volumes that cannot hold a
+  /// visible receiver are left out, others get a window, and the automatic extrusion goes to
+  /// infinity: within a window, sides are cheaper than the back cap that a finite volume needs.
+  at_receivers
+};
+
 struct VolumeOptions {
   VolumeMethod method = VolumeMethod::automatic;
   Extrusion extrusion;
@@ -65,14 +78,22 @@ struct VolumeOptions {
   /// Casters of this role are counted also where they are not in the depth buffer, so their volumes
   /// keep the front cap. All others must be in it, drawn with surface_state and their PlacedObject.
   std::optional<Role> counted_before_drawn = {};
+  Counts counts = Counts::everywhere;
+  /// What is drawn, for Counts::at_receivers, whose receivers are those of the objects given;
+  /// without it, all volumes are counted everywhere.
+  std::optional<View> view = {};
   /// As in raster::ExecuteOptions.
   int threads = 0;
   /// Null: memory of this call's own.
   VolumeMemory* memory = nullptr;
 };
 
+/// The scene's receivers where make_volumes needs them: for the automatic extrusion with
+/// Counts::everywhere. None otherwise.
+Receivers receivers_for(const VolumeOptions& options, const Scene& scene);
+
 /// The volumes of all casters in `objects`, in their order; casters whose volume is empty (nothing
-/// faces the light, or no receiver lies behind) are left out.
+/// faces the light, or no receiver lies behind) are left out. `receivers`: see receivers_for.
 /// `light` is taken as a point (or direction): see light_samples.h.
 std::vector<PlacedVolume> make_volumes(std::span<const PlacedObject> objects, const Light& light,
                                        const Receivers& receivers,

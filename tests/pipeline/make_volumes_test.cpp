@@ -91,12 +91,24 @@ TEST(Caps, LeftOutOfZPassChangeNoByteOfTheStencil) {
   EXPECT_LT(without, with_caps * 2 / 3);
 }
 
+template <class Options>
+Options plain_of(Options options) {
+  options.extrusion = {.kind = Extrusion::Kind::infinite};
+  options.all_caps = true;
+  options.counts = Counts::everywhere;
+  return options;
+}
+
+View view_of(const Camera& camera) { return {camera.clip_from_world, camera.width, camera.height}; }
+
 struct Buffers {
   raster::ColorBuffer color{kWidth, kHeight}, masks{kWidth, kHeight};
-  raster::DepthBuffer depth{kWidth, kHeight};
+  raster::DepthBuffer depth;
   raster::StencilBuffer stencil{kWidth, kHeight};
   std::vector<std::uint8_t> photograph = std::vector<std::uint8_t>(3 * kWidth * kHeight, 200);
 
+  explicit Buffers(raster::DepthFormat format = raster::DepthFormat::d24)
+      : depth(kWidth, kHeight, format) {}
   raster::Targets targets() { return {&color, &depth, &stencil}; }
   raster::Frame record(const Scene& scene, const Camera& camera, HallerOptions options) {
     options.masks = &masks;
@@ -155,6 +167,111 @@ TEST(Caps, LeftOutOfTheMethodsChangeNoByteOfAnyBuffer) {
     ASSERT_TRUE(lean.same_picture(plain)) << "general method, scene " << i;
     ASSERT_EQ(lean.stencil.to_rows(), plain.stencil.to_rows()) << "general method, scene " << i;
   }
+}
+
+/// Objects that do not receive or do not cast, several lights, D16, bodies far away and out of
+/// view.
+Scene varied_scene(int number, std::mt19937& random) {
+  Scene scene = random_scene(number, random);
+  for (std::size_t i = 1; i < scene.objects.size(); ++i) {
+    scene.objects[i].receives = test::below(random, 5) != 0;
+    scene.objects[i].casts = test::below(random, 7) != 0;
+  }
+  if (number % 3 == 0) {
+    // The plate's size decides much: without it, volumes have few receivers.
+    scene.objects[0].model = test::model_of(test::box_mesh({0.7f, 0.1f, 0.5f}));
+  }
+  const std::vector<Object> near_by = scene.objects;
+  for (int copies = 0; copies < 2; ++copies) {
+    const glm::vec3 away = test::uniform_point(random, -9.0f, 9.0f);
+    for (Object object : near_by) {
+      object.world_from_model[3] += glm::vec4(away, 0.0f);
+      scene.objects.push_back(object);
+    }
+  }
+  if (number % 4 == 3) {
+    scene.lights.push_back({.name = "second", .position = {0.2f, 0.9f, -0.4f, 0.0f}});
+  }
+  return scene;
+}
+
+// Oracle: the plain method: every caster's volume to infinity with both caps, counted everywhere.
+TEST(CountsAtReceivers, GiveThePlainMethodsPictureByteForByte) {
+  std::mt19937 random(20053);
+  std::size_t shadowed = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Scene scene = varied_scene(i, random);
+    const Camera camera = random_camera(i, random);
+    const raster::DepthFormat format =
+        i % 5 == 0 ? raster::DepthFormat::d16 : raster::DepthFormat::d24;
+    const VolumeMethod method =
+        std::array{VolumeMethod::automatic, VolumeMethod::zfail, VolumeMethod::zpass}[i % 7 % 3];
+    Buffers lean(format), plain(format);
+    GeneralOptions general{.method = method, .counts = Counts::at_receivers};
+    lean.general(scene, camera, general);
+    plain.general(scene, camera, plain_of(general));
+    ASSERT_TRUE(lean.same_picture(plain)) << "general method, scene " << i;
+    GeneralOptions unshadowed;
+    Scene light_only = scene;
+    for (Object& object : light_only.objects) object.casts = false;
+    lean.general(light_only, camera, unshadowed);
+    const auto lit = lean.color.to_rgba8_rows(), dark = plain.color.to_rgba8_rows();
+    for (std::size_t k = 0; k < lit.size(); k += 4) shadowed += lit[k] != dark[k];
+
+    HallerOptions haller{.method = method, .counts = Counts::at_receivers};
+    haller.double_shadows = i % 5 == 1;
+    lean.haller(scene, camera, haller);
+    plain.haller(scene, camera, plain_of(haller));
+    ASSERT_TRUE(lean.same_picture(plain)) << "Haller, scene " << i;
+  }
+  std::printf("counts at receivers: 300 scenes, %zu shadowed pixels, 0 differ\n", shadowed);
+  EXPECT_GT(shadowed, 300u * kWidth * kHeight / 50u);
+}
+
+// Oracle: the plain method's stencil at every pixel that shows a surface; all of them receive.
+TEST(CountsAtReceivers, AreThePlainMethodsWhereASurfaceIs) {
+  std::mt19937 random(20054);
+  std::size_t surface = 0, elsewhere = 0, volumes = 0, plain_volumes = 0;
+  double area = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    Scene scene = varied_scene(i, random);
+    for (Object& object : scene.objects) object.receives = true;
+    const Camera camera = random_camera(i, random);
+    const VolumeOptions lean_options{.counts = Counts::at_receivers, .view = view_of(camera)};
+    const VolumeOptions plain_options{.extrusion = {.kind = Extrusion::Kind::infinite},
+                                      .all_caps = true};
+    const test::Counted lean = test::count_scene(scene, camera, lean_options);
+    const test::Counted plain = test::count_scene(scene, camera, plain_options);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const bool same = lean.stencil.at(x, y) == plain.stencil.at(x, y);
+        if (plain.depth.at(x, y) == plain.depth.max_value()) {
+          elsewhere += !same;
+          continue;
+        }
+        ++surface;
+        ASSERT_TRUE(same) << "scene " << i << ", pixel " << x << ", " << y;
+      }
+    }
+    TopologyCache topologies;
+    const std::vector<PlacedObject> objects = place_objects(scene, camera, topologies);
+    const auto made = make_volumes(objects, scene.lights[0], {},
+                                   near_region(camera.clip_from_world), lean_options);
+    for (const PlacedVolume& volume : made) {
+      area += volume.window ? static_cast<double>(volume.window->width) * volume.window->height /
+                                  (kWidth * kHeight)
+                            : 1.0;
+    }
+    volumes += made.size();
+    plain_volumes += plain.zpass + plain.zfail;
+  }
+  std::printf(
+      "counts at receivers: %zu pixels with a surface, 0 differ; %zu others do; %zu volumes of "
+      "%zu, windows of %.3f of the view\n",
+      surface, elsewhere, volumes, plain_volumes, area / static_cast<double>(volumes));
+  EXPECT_GT(surface, 1000000u);
+  EXPECT_LT(volumes, plain_volumes);
+  EXPECT_LT(area, 0.8 * static_cast<double>(volumes));
 }
 
 // Oracle: volumes made on one thread, in memory of their own.
