@@ -25,23 +25,6 @@ namespace {
 /// Casters that one piece of work takes.
 constexpr std::size_t kChunk = 4;
 
-std::vector<WorldTriangle> casting_triangles(const PlacedObject& object,
-                                             const Silhouette& silhouette) {
-  const Topology& topology = *object.topology;
-  const glm::dmat4 world(object.object->world_from_model);
-  std::vector<WorldTriangle> triangles;
-  for (std::size_t t = 0; t < silhouette.casting.size(); ++t) {
-    if (silhouette.casting[t] == 0) continue;
-    WorldTriangle triangle;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      triangle[corner] =
-          glm::dvec3(world * glm::dvec4(topology.positions[topology.indices[3 * t + corner]]));
-    }
-    triangles.push_back(triangle);
-  }
-  return triangles;
-}
-
 /// Are volumes made for the pixels of visible receivers alone?
 bool makes_windows(const VolumeOptions& options) {
   return options.counts == Counts::at_receivers && options.view &&
@@ -96,7 +79,8 @@ class Maker {
     Silhouette& silhouette = worker.silhouette;
     find_silhouette(topology, light_model, silhouette);
     if (needs_reach(options_)) {
-      placed.reach = find_reach(light_.position, casting_triangles(object, silhouette), receivers_);
+      worker.casting.assign(topology, silhouette.casting, world_from_model);
+      placed.reach = find_reach(light_.position, worker.casting, receivers_);
     }
     const Sweep sweep = sweep_of(options_.extrusion, placed.reach);
     if (sweep.kind == Sweep::Kind::nowhere) return;

@@ -49,6 +49,7 @@ class VolumeMemory {
   struct Worker {
     VolumeBuilder builder;
     Silhouette silhouette;
+    CastingMesh casting;
   };
   /// One a chunk of work.
   std::span<Worker> workers(std::size_t count);
