@@ -14,8 +14,17 @@ raster::Frame record_general(const Scene& scene, const Camera& camera,
   const std::vector<PlacedObject> objects =
       place_objects(scene, camera, options.topologies ? *options.topologies : own_topologies);
   const std::vector<Light> lights = sample_lights(scene);
-  const Receivers receivers(scene);
   const std::optional<NearRegion> region = near_region(camera.clip_from_world);
+  const VolumeOptions volume_options{
+      .method = options.method,
+      .extrusion = options.extrusion,
+      .all_caps = options.all_caps,
+      .counts = options.appendix_letter ? Counts::everywhere : options.counts,
+      .view =
+          View{camera.clip_from_world, targets.width(), targets.height(), targets.depth->format()},
+      .threads = options.threads,
+      .memory = options.volumes};
+  const Receivers receivers = receivers_for(volume_options, scene);
 
   raster::Frame frame;
   frame.begin_pass("ambient pass", targets);
@@ -29,9 +38,10 @@ raster::Frame record_general(const Scene& scene, const Camera& camera,
     const std::string suffix = lights.size() > 1 ? ": " + light.name : "";
     frame.begin_pass("shadow volumes" + suffix, targets);
     frame.clear({.stencil = 0});
-    count_volumes(
-        frame, make_volumes(objects, light, receivers, region, {options.method, options.extrusion}),
-        {.appendix_letter = options.appendix_letter, .light_name = light.name});
+    count_volumes(frame, make_volumes(objects, light, receivers, region, volume_options),
+                  {.appendix_letter = options.appendix_letter,
+                   .casters_drawn = !options.all_caps,
+                   .light_name = light.name});
     frame.begin_pass("lit pass" + suffix, targets);
     for (const PlacedObject& object : objects) add_light(frame, object, scene, camera, light);
   }

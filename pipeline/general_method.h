@@ -12,11 +12,20 @@ namespace gnomon::pipeline {
 struct GeneralOptions {
   VolumeMethod method = VolumeMethod::automatic;
   Extrusion extrusion;
+  /// As VolumeOptions::all_caps.
+  bool all_caps = false;
+  /// With at_receivers the picture is the same and the stencil may differ. Saturating counts
+  /// (appendix_letter) depend on what else is counted: they are always taken everywhere.
+  Counts counts = Counts::everywhere;
   /// Culled single-sided draws and saturating operations (appendix A).
   bool appendix_letter = false;
   glm::vec4 background{0.0f, 0.0f, 0.0f, 1.0f};
   /// Topologies kept between frames; null builds them anew.
   TopologyCache* topologies = nullptr;
+  /// Memory of volumes kept between frames; null allocates it anew.
+  VolumeMemory* volumes = nullptr;
+  /// Threads that make volumes, as in raster::ExecuteOptions.
+  int threads = 0;
 };
 
 /// Records the frame of a wholly virtual scene: every object, whatever its role, is drawn and

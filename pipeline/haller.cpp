@@ -38,9 +38,12 @@ class Recorder {
     TopologyCache own_topologies;
     objects_ =
         place_objects(scene, camera, options.topologies ? *options.topologies : own_topologies);
-    const Receivers receivers(scene);
+    const VolumeOptions volume_options = make_volume_options();
+    const Receivers receivers = receivers_for(volume_options, scene);
     const std::optional<NearRegion> region = near_region(camera.clip_from_world);
-    for (const Light& light : lights_) volumes_.push_back(volumes_of(light, receivers, region));
+    for (const Light& light : lights_) {
+      volumes_.push_back(volumes_of(light, receivers, region, volume_options));
+    }
     if (lights_.size() > 1) texture_ = photograph_texture(photograph);
   }
 
@@ -57,11 +60,24 @@ class Recorder {
   }
 
  private:
+  VolumeOptions make_volume_options() const {
+    return {.method = options_.method,
+            .extrusion = options_.extrusion,
+            .all_caps = options_.all_caps,
+            // The second step counts their volumes on the phantoms alone.
+            .counted_before_drawn = Role::virtual_object,
+            .counts = options_.appendix_letter ? Counts::everywhere : options_.counts,
+            .view = View{camera_.clip_from_world, targets_.width(), targets_.height(),
+                         targets_.depth->format()},
+            .threads = options_.threads,
+            .memory = options_.volumes};
+  }
+
   LightVolumes volumes_of(const Light& light, const Receivers& receivers,
-                          const std::optional<NearRegion>& region) const {
+                          const std::optional<NearRegion>& region,
+                          const VolumeOptions& options) const {
     LightVolumes result;
-    for (PlacedVolume& volume :
-         make_volumes(objects_, light, receivers, region, {options_.method, options_.extrusion})) {
+    for (PlacedVolume& volume : make_volumes(objects_, light, receivers, region, options)) {
       const bool real = volume.caster->role == Role::phantom;
       (real ? result.real : result.virtual_).push_back(std::move(volume));
     }
@@ -84,6 +100,7 @@ class Recorder {
     count_volumes(frame_, volumes,
                   {.appendix_letter = options_.appendix_letter,
                    .write_mask = write_mask,
+                   .casters_drawn = virtual_objects_drawn_ && !options_.all_caps,
                    .light_name = light.name});
   }
 
@@ -188,6 +205,7 @@ class Recorder {
   /// leaves alpha 1 where one is visible: exactly there, whatever alpha a texture has.
   void draw_virtual_lit(const LightTerms& terms) {
     begin(haller_label::kVirtualLit);
+    virtual_objects_drawn_ = true;
     frame_.clear({.stencil = 0});
     raster::State state = surface_state();
     state.depth = raster::DepthState{};
@@ -276,6 +294,7 @@ class Recorder {
   std::vector<LightVolumes> volumes_;
   std::shared_ptr<const raster::Texture> texture_;
   raster::Frame frame_;
+  bool virtual_objects_drawn_ = false;
 };
 
 }  // namespace

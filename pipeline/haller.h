@@ -15,6 +15,11 @@ namespace gnomon::pipeline {
 struct HallerOptions {
   VolumeMethod method = VolumeMethod::automatic;
   Extrusion extrusion;
+  /// As VolumeOptions::all_caps.
+  bool all_caps = false;
+  /// With at_receivers the picture is the same and the stencil may differ. Saturating counts
+  /// (appendix_letter) depend on what else is counted: they are always taken everywhere.
+  Counts counts = Counts::everywhere;
   /// The paper to the letter: virtual shadows darken real surfaces also where the photograph shows
   /// them in a real object's shadow already.
   bool double_shadows = false;
@@ -27,6 +32,10 @@ struct HallerOptions {
   raster::ColorBuffer* masks = nullptr;
   /// Topologies kept between frames; null builds them anew.
   TopologyCache* topologies = nullptr;
+  /// Memory of volumes kept between frames; null allocates it anew.
+  VolumeMemory* volumes = nullptr;
+  /// Threads that make volumes, as in raster::ExecuteOptions.
+  int threads = 0;
 };
 
 /// Labels of the passes, in the paper's words. With several lights ": LIGHT" follows where a pass

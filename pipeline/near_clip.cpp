@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -105,23 +106,50 @@ std::optional<NearRegion> near_region(const glm::mat4& clip_from_world) {
   return region;
 }
 
-bool volume_may_touch(const NearRegion& region, const glm::vec4& light_world,
-                      const Topology& caster, const glm::mat4& world_from_model) {
-  const Hull hull = make_hull(region, light_world, glm::inverse(glm::dmat4(world_from_model)));
-  double largest = 0.0;
+namespace {
+
+/// Does a plane of the hull separate it from all points? `extent_of` gives the points' interval
+/// along a direction of unit length; `largest` is the largest length among them.
+template <class ExtentOf>
+bool separated(const Hull& hull, double largest, ExtentOf extent_of) {
   for (const glm::dvec3& p : hull.points) largest = std::max(largest, glm::length(p));
-  for (const glm::vec4& p : caster.positions) {
-    largest = std::max(largest, glm::length(glm::dvec3(p)));
-  }
   for (const glm::dvec3& normal : hull.normals) {
     const double length = glm::length(normal);
     if (!(length > 0.0) || !std::isfinite(length)) continue;
     const glm::dvec3 unit = normal / length;
-    Interval caster_extent;
-    for (const glm::vec4& p : caster.positions) caster_extent.add(glm::dot(unit, glm::dvec3(p)));
-    if (apart(extent(hull, unit), caster_extent, kClear * largest)) return false;
+    if (apart(extent(hull, unit), extent_of(unit), kClear * largest)) return true;
   }
-  return true;
+  return false;
+}
+
+/// The same for the corners of the caster's bounds: what separates these separates the caster.
+bool separated_from_bounds(const Hull& hull, const Topology& caster) {
+  const glm::dvec3 middle = (caster.low + caster.high) * 0.5, half = caster.high - middle;
+  const glm::dvec3 outermost = glm::max(glm::abs(caster.low), glm::abs(caster.high));
+  return separated(hull, glm::length(outermost), [&](const glm::dvec3& unit) {
+    const double at = glm::dot(unit, middle), reach = glm::dot(glm::abs(unit), half);
+    return Interval{at - reach, at + reach};
+  });
+}
+
+bool separated_from_corners(const Hull& hull, const Topology& caster) {
+  double largest = 0.0;
+  for (const glm::vec4& p : caster.positions) {
+    largest = std::max(largest, glm::length(glm::dvec3(p)));
+  }
+  return separated(hull, largest, [&](const glm::dvec3& unit) {
+    Interval interval;
+    for (const glm::vec4& p : caster.positions) interval.add(glm::dot(unit, glm::dvec3(p)));
+    return interval;
+  });
+}
+
+}  // namespace
+
+bool volume_may_touch(const NearRegion& region, const glm::vec4& light_world,
+                      const Topology& caster, const glm::mat4& world_from_model) {
+  const Hull hull = make_hull(region, light_world, glm::inverse(glm::dmat4(world_from_model)));
+  return !separated_from_bounds(hull, caster) && !separated_from_corners(hull, caster);
 }
 
 VolumeMethod choose_method(VolumeMethod wanted, const std::optional<NearRegion>& region,

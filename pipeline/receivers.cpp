@@ -19,7 +19,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "pipeline/basis.h"
@@ -70,18 +72,61 @@ void clip(Polygon& polygon, const Region& region, Polygon& scratch) {
   }
 }
 
-template <class Visit>
-void visit_clipped(const Receivers& receivers, const Region& region, Visit&& visit) {
-  Polygon polygon, scratch;
-  for (const Receivers::Group& group : receivers.groups()) {
-    if (box_outside(group, region)) continue;
-    for (const WorldTriangle& triangle : group.triangles) {
-      polygon.assign(triangle.begin(), triangle.end());
-      clip(polygon, region, scratch);
-      for (const glm::dvec3& p : polygon) visit(p);
+/// The largest values of two functions over receivers cut to a region: the distance from an origin
+/// and the coordinate along an axis. Both are convex, so nothing has to be cut whose corners reach
+/// no farther than what was found; the order of the receivers has no say in the result.
+class Farthest {
+ public:
+  Farthest(const glm::dvec3& origin, const glm::dvec3& axis) : origin_(origin), axis_(axis) {}
+
+  double distance = 0.0, along = -kInfinity;
+
+  void look_at(const Receivers& receivers, const Region& region) {
+    std::vector<std::pair<double, const Receivers::Group*>> order;
+    for (const Receivers::Group& group : receivers.groups()) {
+      if (!box_outside(group, region)) order.emplace_back(reach_of_box(group).first, &group);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (const auto& [reach, group] : order) {
+      const auto [square, most_along] = reach_of_box(*group);
+      if (!matters(square, most_along)) continue;
+      for (const WorldTriangle& triangle : group->triangles) look_at(triangle, region);
     }
   }
-}
+
+ private:
+  /// Squared distance and coordinate that nothing in the box exceeds.
+  std::pair<double, double> reach_of_box(const Receivers::Group& group) const {
+    const glm::dvec3 low = group.low - origin_, high = group.high - origin_;
+    const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
+    const glm::dvec3 most = glm::max(axis_ * low, axis_ * high);
+    return {glm::dot(far, far), most.x + most.y + most.z};
+  }
+  /// The margin is for rounding, of bounds and of cuts, a thousand times over.
+  bool matters(double square, double most_along) const {
+    return !(square * (1.0 + 1e-12) < distance * distance &&
+             most_along + 1e-12 * std::sqrt(square) < along);
+  }
+  void look_at(const WorldTriangle& triangle, const Region& region) {
+    double square = 0.0, most_along = -kInfinity;
+    for (const glm::dvec3& corner : triangle) {
+      const glm::dvec3 p = corner - origin_;
+      square = std::max(square, glm::dot(p, p));
+      most_along = std::max(most_along, glm::dot(axis_, p));
+    }
+    if (!matters(square, most_along)) return;
+    polygon_.assign(triangle.begin(), triangle.end());
+    clip(polygon_, region, scratch_);
+    for (const glm::dvec3& p : polygon_) {
+      distance = std::max(distance, glm::length(p - origin_));
+      along = std::max(along, glm::dot(axis_, p - origin_));
+    }
+  }
+
+  const glm::dvec3 origin_, axis_;
+  Polygon polygon_, scratch_;
+};
 
 /// Distance from a point to a triangle (degenerate ones included): the nearest of the projection,
 /// if it falls inside, and the three edges.
@@ -108,6 +153,22 @@ double distance_to(const glm::dvec3& point, const WorldTriangle& triangle) {
   return nearest;
 }
 
+/// Distance from a point to the nearest of the triangles. None whose sphere about its first corner
+/// is farther than what was found can be it.
+double distance_to(const glm::dvec3& point, const CastingMesh& casting) {
+  double nearest = kInfinity;
+  for (std::size_t t = 0; t < casting.triangles.size(); ++t) {
+    const WorldTriangle triangle = casting.triangle(t);
+    const glm::dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+    const glm::dvec3 pa = triangle[0] - point;
+    const double radius = std::sqrt(std::max(glm::dot(ab, ab), glm::dot(ac, ac)));
+    const double reach = (nearest + radius) * (1.0 + 1e-12);
+    if (glm::dot(pa, pa) > reach * reach) continue;
+    nearest = std::min(nearest, distance_to(point, triangle));
+  }
+  return nearest;
+}
+
 struct Box {
   glm::dvec3 low{kInfinity}, high{-kInfinity};
   void add(const glm::dvec3& p) {
@@ -129,24 +190,20 @@ struct Pyramid {
   double nearest_z = 0.0;
 };
 
-Pyramid pyramid_round(const glm::dvec3& light, std::span<const WorldTriangle> casting,
-                      const Basis& basis, double farthest_corner) {
+Pyramid pyramid_round(const glm::dvec3& light, const CastingMesh& casting, const Basis& basis,
+                      double farthest_corner) {
   Pyramid pyramid;
   double z_min = kInfinity;
-  for (const WorldTriangle& triangle : casting) {
-    for (const glm::dvec3& corner : triangle) {
-      z_min = std::min(z_min, glm::dot(basis.axis, corner - light));
-    }
+  for (const glm::dvec3& corner : casting.corners) {
+    z_min = std::min(z_min, glm::dot(basis.axis, corner - light));
   }
   if (!(z_min > kTooNear * farthest_corner)) return pyramid;
   glm::dvec2 low(kInfinity), high(-kInfinity);
-  for (const WorldTriangle& triangle : casting) {
-    for (const glm::dvec3& corner : triangle) {
-      const glm::dvec3 q = basis(corner - light);
-      const glm::dvec2 slope = glm::dvec2(q) / q.z;
-      low = glm::min(low, slope);
-      high = glm::max(high, slope);
-    }
+  for (const glm::dvec3& corner : casting.corners) {
+    const glm::dvec3 q = basis(corner - light);
+    const glm::dvec2 slope = glm::dvec2(q) / q.z;
+    low = glm::min(low, slope);
+    high = glm::max(high, slope);
   }
   low -= kWiden;
   high += kWiden;
@@ -163,17 +220,15 @@ Pyramid pyramid_round(const glm::dvec3& light, std::span<const WorldTriangle> ca
   return pyramid;
 }
 
-Reach reach_from_point(const glm::dvec3& light, std::span<const WorldTriangle> casting,
+Reach reach_from_point(const glm::dvec3& light, const CastingMesh& casting,
                        const Receivers& receivers) {
   Box box;
-  double farthest_corner = 0.0, nearest = kInfinity;
-  for (const WorldTriangle& triangle : casting) {
-    nearest = std::min(nearest, distance_to(light, triangle));
-    for (const glm::dvec3& corner : triangle) {
-      box.add(corner);
-      farthest_corner = std::max(farthest_corner, glm::length(corner - light));
-    }
+  double farthest_corner = 0.0;
+  for (const glm::dvec3& corner : casting.corners) {
+    box.add(corner);
+    farthest_corner = std::max(farthest_corner, glm::length(corner - light));
   }
+  const double nearest = distance_to(light, casting);
   if (!(nearest > kTooNear * farthest_corner)) return {Reach::Kind::unbounded, 0.0};
 
   const glm::dvec3 to_centre = (box.low + box.high) * 0.5 - light;
@@ -184,35 +239,30 @@ Reach reach_from_point(const glm::dvec3& light, std::span<const WorldTriangle> c
     basis = basis_about(to_centre / centre_distance);
     pyramid = pyramid_round(light, casting, basis, farthest_corner);
   }
-  double farthest = 0.0, farthest_z = 0.0;
-  visit_clipped(receivers, pyramid.region, [&](const glm::dvec3& p) {
-    farthest = std::max(farthest, glm::length(p - light));
-    if (pyramid.usable) farthest_z = std::max(farthest_z, glm::dot(basis.axis, p - light));
-  });
-  double factor = farthest / nearest;
-  if (pyramid.usable) factor = std::min(factor, farthest_z / pyramid.nearest_z);
+  Farthest farthest(light, basis.axis);
+  farthest.look_at(receivers, pyramid.region);
+  double factor = farthest.distance / nearest;
+  if (pyramid.usable) {
+    factor = std::min(factor, std::max(farthest.along, 0.0) / pyramid.nearest_z);
+  }
   return reach_of(factor * (1.0 + kReachMargin), 1.0);
 }
 
-Reach reach_in_direction(const glm::dvec3& towards_light, std::span<const WorldTriangle> casting,
+Reach reach_in_direction(const glm::dvec3& towards_light, const CastingMesh& casting,
                          const Receivers& receivers) {
   const Basis basis = basis_about(-towards_light);
   Box box;
-  for (const WorldTriangle& triangle : casting) {
-    for (const glm::dvec3& corner : triangle) box.add(basis(corner));
-  }
+  for (const glm::dvec3& corner : casting.corners) box.add(basis(corner));
   const double widen = kWiden * (1.0 + glm::length(box.high - box.low));
   const Region region{{basis.u, box.low.x - widen},
                       {-basis.u, -box.high.x - widen},
                       {basis.v, box.low.y - widen},
                       {-basis.v, -box.high.y - widen},
                       {basis.axis, box.low.z - widen}};
-  double farthest = -kInfinity;
-  visit_clipped(receivers, region, [&](const glm::dvec3& p) {
-    farthest = std::max(farthest, glm::dot(basis.axis, p));
-  });
-  if (farthest == -kInfinity) return {Reach::Kind::none, 0.0};
-  return reach_of((farthest - box.low.z + widen) * (1.0 + kReachMargin), 0.0);
+  Farthest farthest(glm::dvec3(0.0), basis.axis);
+  farthest.look_at(receivers, region);
+  if (farthest.along == -kInfinity) return {Reach::Kind::none, 0.0};
+  return reach_of((farthest.along - box.low.z + widen) * (1.0 + kReachMargin), 0.0);
 }
 
 }  // namespace
@@ -251,9 +301,30 @@ void Receivers::add(const Model& model, const glm::mat4& world_from_model) {
   groups_.push_back(std::move(group));
 }
 
-Reach find_reach(const glm::vec4& light_world, std::span<const WorldTriangle> casting,
+void CastingMesh::assign(const Topology& topology, std::span<const std::int8_t> casting,
+                         const glm::mat4& world_from_model) {
+  constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
+  const glm::dmat4 world(world_from_model);
+  corners.clear();
+  triangles.clear();
+  corner_of_.assign(topology.positions.size(), kUnused);
+  for (std::size_t t = 0; t < casting.size(); ++t) {
+    if (casting[t] == 0) continue;
+    std::array<std::uint32_t, 3>& triangle = triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = topology.indices[3 * t + k];
+      if (corner_of_[vertex] == kUnused) {
+        corner_of_[vertex] = static_cast<std::uint32_t>(corners.size());
+        corners.emplace_back(world * glm::dvec4(topology.positions[vertex]));
+      }
+      triangle[k] = corner_of_[vertex];
+    }
+  }
+}
+
+Reach find_reach(const glm::vec4& light_world, const CastingMesh& casting,
                  const Receivers& receivers) {
-  if (casting.empty()) return {Reach::Kind::none, 0.0};
+  if (casting.triangles.empty()) return {Reach::Kind::none, 0.0};
   const glm::dvec3 light(light_world);
   if (light_world.w != 0.0f) return reach_from_point(light, casting, receivers);
   return reach_in_direction(glm::normalize(light), casting, receivers);

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,11 +16,31 @@
 
 #include "pipeline/mesh.h"
 #include "pipeline/scene.h"
+#include "pipeline/topology.h"
 
 namespace gnomon::pipeline {
 
 /// Three corners in world space.
 using WorldTriangle = std::array<glm::dvec3, 3>;
+
+/// A caster's casting triangles in world space: corners, and three of them a triangle.
+class CastingMesh {
+ public:
+  std::vector<glm::dvec3> corners;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  /// Those triangles of the mesh whose `casting` is not 0 (Silhouette::casting), in memory that is
+  /// used again.
+  void assign(const Topology& topology, std::span<const std::int8_t> casting,
+              const glm::mat4& world_from_model);
+
+  WorldTriangle triangle(std::size_t t) const {
+    return {corners[triangles[t][0]], corners[triangles[t][1]], corners[triangles[t][2]]};
+  }
+
+ private:
+  std::vector<std::uint32_t> corner_of_;
+};
 
 /// World-space triangles of everything that receives a shadow, with a bounding box an object.
 class Receivers {
@@ -61,7 +83,7 @@ inline constexpr double kReachMargin = 1.0 / 256.0;
 
 /// The reach that is enough for the receivers, for casting triangles in world space.
 /// Precondition: light_world is a finite point (w = 1) or a direction (w = 0) that is not null.
-Reach find_reach(const glm::vec4& light_world, std::span<const WorldTriangle> casting,
+Reach find_reach(const glm::vec4& light_world, const CastingMesh& casting,
                  const Receivers& receivers);
 
 }  // namespace gnomon::pipeline

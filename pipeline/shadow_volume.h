@@ -4,6 +4,7 @@
 // equally often both ways - because the volume is the sum of the casting triangles' prisms, whose
 // inner walls cancel. Each vertex is swept once, so there are no cracks. The front cap has the bits
 // of the caster's own vertices: drawn with the caster's clip_from_model it coincides with it.
+// A cap may be left out where no count depends on it (count_volumes.cpp says where).
 #pragma once
 
 #include <cstddef>
@@ -19,35 +20,75 @@
 
 namespace gnomon::pipeline {
 
+/// Which caps a volume has beside its sides.
+struct Caps {
+  bool front = true, back = true;
+  bool operator==(const Caps&) const = default;
+};
+
 /// Counter-clockwise from outside, in the order front cap, sides, back cap. Positions with w = 0
 /// are points at infinity.
 struct ShadowVolume {
+  /// First those of the sides.
   std::vector<glm::vec4> positions;
   std::vector<std::uint32_t> indices;
   /// Indices (three a triangle) of the front cap and of the sides; the rest is the back cap.
   std::size_t front_cap_indices = 0, side_indices = 0;
+  /// Positions that the sides use.
+  std::size_t side_positions = 0;
 
   raster::MeshView view() const { return {positions, indices}; }
+  /// The sides and the back cap, if there is one.
+  raster::MeshView view_without_front_cap() const;
   bool empty() const { return indices.empty(); }
 };
 
-/// To infinity: v goes to the direction (v - L, 0), or to (-d, 0) for a direction. In the latter
-/// case the back cap is one point and falls away with every triangle that has it twice; those have
-/// no boundary, so the chain stays closed.
-/// Preconditions of all three: `silhouette` belongs to `topology` and `light_model`
-/// (light_in_model).
+/// Builds volumes one after the other in memory that it keeps. Not for use by several threads at
+/// once.
+/// Preconditions of all functions: `silhouette` belongs to `topology` and `light_model`
+/// (light_in_model). `volume` is overwritten; what it has reserved is used again.
+class VolumeBuilder {
+ public:
+  /// To infinity: v goes to the direction (v - L, 0), or to (-d, 0) for a direction. In the latter
+  /// case the back cap is one point and falls away with every triangle that has it twice; those
+  /// have no boundary, so the chain stays closed.
+  void extrude_to_infinity(const Topology& topology, const Silhouette& silhouette,
+                           const glm::dvec4& light_model, Caps caps, ShadowVolume& volume);
+
+  /// v goes to L + amount * (v - L) for a point, by `amount` metres away from the light for a
+  /// direction (Reach::amount).
+  void extrude_by(const Topology& topology, const Silhouette& silhouette,
+                  const glm::dvec4& light_model, double amount, Caps caps, ShadowVolume& volume);
+
+  /// The paper's finite volume: each vertex moves radius_m metres (in the world) along its ray.
+  /// Precondition: radius_m is positive and finite.
+  void extrude_by_radius(const Topology& topology, const Silhouette& silhouette,
+                         const glm::dvec4& light_model, const glm::mat4& world_from_model,
+                         double radius_m, Caps caps, ShadowVolume& volume);
+
+ private:
+  /// Where a vertex and its swept copy are in the volume that is being built, if their generation
+  /// is the builder's.
+  struct Slot {
+    std::uint32_t near_generation = 0, near = 0, far_generation = 0, far = 0;
+  };
+  template <class FarOf>
+  class Assembler;
+  template <class FarOf>
+  void assemble(const Topology& topology, const Silhouette& silhouette, bool one_far_point,
+                Caps caps, FarOf far_of, ShadowVolume& volume);
+
+  std::vector<Slot> slots_;
+  std::uint32_t generation_ = 0;
+};
+
+/// The same volumes in memory of their own.
 ShadowVolume extrude_to_infinity(const Topology& topology, const Silhouette& silhouette,
-                                 const glm::dvec4& light_model);
-
-/// v goes to L + amount * (v - L) for a point, by `amount` metres away from the light for a
-/// direction (Reach::amount).
+                                 const glm::dvec4& light_model, Caps caps = {});
 ShadowVolume extrude_by(const Topology& topology, const Silhouette& silhouette,
-                        const glm::dvec4& light_model, double amount);
-
-/// The paper's finite volume: each vertex moves radius_m metres (in the world) along its ray.
-/// Precondition: radius_m is positive and finite.
+                        const glm::dvec4& light_model, double amount, Caps caps = {});
 ShadowVolume extrude_by_radius(const Topology& topology, const Silhouette& silhouette,
                                const glm::dvec4& light_model, const glm::mat4& world_from_model,
-                               double radius_m);
+                               double radius_m, Caps caps = {});
 
 }  // namespace gnomon::pipeline

@@ -1,26 +1,34 @@
 #include "pipeline/silhouette.h"
 
 #include <cmath>
-#include <cstdlib>
+#include <span>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
 namespace {
 
-std::int8_t casting_side(const Topology& topology, std::size_t triangle, const glm::dvec4& light,
-                         bool both_sides) {
-  const glm::dvec3 a(topology.positions[topology.indices[3 * triangle]]);
-  const glm::dvec3 b(topology.positions[topology.indices[3 * triangle + 1]]);
-  const glm::dvec3 c(topology.positions[topology.indices[3 * triangle + 2]]);
-  const double facing = glm::dot(glm::cross(b - a, c - a), glm::dvec3(light) - a * light.w);
-  if (facing > 0.0) return 1;
-  if (facing < 0.0 && both_sides) return -1;
-  return 0;
+/// One decision a triangle: the sign of dot(normal, light - corner * w), added up from x to z.
+/// `reverse` is what a triangle is that turns its back: 0 or -1.
+void mark_casting(const TrianglePlanes& planes, const glm::dvec4& light, int reverse,
+                  std::span<std::int8_t> casting) {
+  const double *nx = planes.normal_x.data(), *ny = planes.normal_y.data(),
+               *nz = planes.normal_z.data();
+  const float *ax = planes.corner_x.data(), *ay = planes.corner_y.data(),
+              *az = planes.corner_z.data();
+  const double w = light.w;
+  for (std::size_t t = 0; t < casting.size(); ++t) {
+    const double x = nx[t] * (light.x - static_cast<double>(ax[t]) * w);
+    const double y = ny[t] * (light.y - static_cast<double>(ay[t]) * w);
+    const double z = nz[t] * (light.z - static_cast<double>(az[t]) * w);
+    const double facing = x + y + z;
+    casting[t] = static_cast<std::int8_t>((facing > 0.0 ? 1 : 0) + (facing < 0.0 ? reverse : 0));
+  }
 }
 
 /// Is the point inside a closed mesh? Counts, with sign, where a line from it leaves. The line's
@@ -46,6 +54,34 @@ bool encloses(const Topology& topology, const glm::dvec3& point) {
   return leaves != 0;
 }
 
+bool in_bounds(const Topology& topology, const glm::dvec3& point) {
+  return glm::all(glm::lessThanEqual(topology.low, point)) &&
+         glm::all(glm::lessThanEqual(point, topology.high));
+}
+
+/// Appends the outline among the edges [first, last), each of which is a pair.
+void trace_pairs(const Topology& topology, std::uint32_t first, std::uint32_t last,
+                 Silhouette& silhouette) {
+  const std::int8_t* casting = silhouette.casting.data();
+  for (std::uint32_t e = first; e < last; ++e) {
+    const EdgePair pair = topology.pairs[e];
+    const int sum = casting[pair.forward] - casting[pair.backward];
+    if (sum == 0) continue;
+    const Edge& edge = topology.edges[e];
+    silhouette.edges.push_back(sum > 0 ? SilhouetteEdge{edge.a, edge.b, sum}
+                                       : SilhouetteEdge{edge.b, edge.a, -sum});
+  }
+}
+
+void trace_edge(const Topology& topology, const Edge& edge, Silhouette& silhouette) {
+  int sum = 0;
+  for (const EdgeUse& use : topology.uses_of(edge)) {
+    sum += use.sign * silhouette.casting[use.triangle];
+  }
+  if (sum > 0) silhouette.edges.push_back({edge.a, edge.b, sum});
+  if (sum < 0) silhouette.edges.push_back({edge.b, edge.a, -sum});
+}
+
 }  // namespace
 
 glm::dvec4 light_in_model(const glm::vec4& light_world, const glm::mat4& world_from_model) {
@@ -68,22 +104,27 @@ glm::dvec4 light_in_model(const glm::vec4& light_world, const glm::mat4& world_f
   return result;
 }
 
+void find_silhouette(const Topology& topology, const glm::dvec4& light_model,
+                     Silhouette& silhouette) {
+  const glm::dvec3 light(light_model);
+  const bool both_sides =
+      !topology.closed() ||
+      (light_model.w != 0.0 && in_bounds(topology, light) && encloses(topology, light));
+  silhouette.casting.resize(topology.triangle_count());
+  mark_casting(topology.planes, light_model, both_sides ? -1 : 0, silhouette.casting);
+  silhouette.edges.clear();
+  std::uint32_t next = 0;
+  for (const std::uint32_t unpaired : topology.unpaired_edges) {
+    trace_pairs(topology, next, unpaired, silhouette);
+    trace_edge(topology, topology.edges[unpaired], silhouette);
+    next = unpaired + 1;
+  }
+  trace_pairs(topology, next, static_cast<std::uint32_t>(topology.edges.size()), silhouette);
+}
+
 Silhouette find_silhouette(const Topology& topology, const glm::dvec4& light_model) {
   Silhouette silhouette;
-  const bool both_sides =
-      !topology.closed() || (light_model.w != 0.0 && encloses(topology, glm::dvec3(light_model)));
-  silhouette.casting.resize(topology.triangle_count());
-  for (std::size_t t = 0; t < topology.triangle_count(); ++t) {
-    silhouette.casting[t] = casting_side(topology, t, light_model, both_sides);
-  }
-  for (const Edge& edge : topology.edges) {
-    int sum = 0;
-    for (const EdgeUse& use : topology.uses_of(edge)) {
-      sum += use.sign * silhouette.casting[use.triangle];
-    }
-    if (sum > 0) silhouette.edges.push_back({edge.a, edge.b, sum});
-    if (sum < 0) silhouette.edges.push_back({edge.b, edge.a, -sum});
-  }
+  find_silhouette(topology, light_model, silhouette);
   return silhouette;
 }
 

@@ -41,4 +41,8 @@ glm::dvec4 light_in_model(const glm::vec4& light_world, const glm::mat4& world_f
 /// with the light inside: the shell keeps it in.
 Silhouette find_silhouette(const Topology& topology, const glm::dvec4& light_model);
 
+/// The same into a silhouette whose memory is used again.
+void find_silhouette(const Topology& topology, const glm::dvec4& light_model,
+                     Silhouette& silhouette);
+
 }  // namespace gnomon::pipeline

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -119,6 +122,47 @@ void count_faults(Topology& topology) {
   }
 }
 
+void build_pairs(Topology& topology) {
+  topology.pairs.reserve(topology.edges.size());
+  for (std::uint32_t e = 0; e < topology.edges.size(); ++e) {
+    const std::span<const EdgeUse> uses = topology.uses_of(topology.edges[e]);
+    EdgePair pair;
+    if (uses.size() == 2 && uses[0].sign != uses[1].sign) {
+      const bool first_forward = uses[0].sign > 0;
+      pair = {uses[first_forward ? 0 : 1].triangle, uses[first_forward ? 1 : 0].triangle};
+    } else {
+      topology.unpaired_edges.push_back(e);
+    }
+    topology.pairs.push_back(pair);
+  }
+}
+
+void build_planes(Topology& topology) {
+  TrianglePlanes& planes = topology.planes;
+  const std::size_t count = topology.triangle_count();
+  for (auto* component : {&planes.normal_x, &planes.normal_y, &planes.normal_z}) {
+    component->reserve(count);
+  }
+  for (auto* component : {&planes.corner_x, &planes.corner_y, &planes.corner_z}) {
+    component->reserve(count);
+  }
+  for (std::size_t t = 0; t < count; ++t) {
+    const glm::vec4& corner = topology.positions[topology.indices[3 * t]];
+    const glm::dvec3 a(corner), b(topology.positions[topology.indices[3 * t + 1]]),
+        c(topology.positions[topology.indices[3 * t + 2]]);
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    planes.normal_x.push_back(normal.x);
+    planes.normal_y.push_back(normal.y);
+    planes.normal_z.push_back(normal.z);
+    planes.corner_x.push_back(corner.x);
+    planes.corner_y.push_back(corner.y);
+    planes.corner_z.push_back(corner.z);
+    if (t == 0) topology.low = topology.high = a;
+    topology.low = glm::min(topology.low, glm::min(a, glm::min(b, c)));
+    topology.high = glm::max(topology.high, glm::max(a, glm::max(b, c)));
+  }
+}
+
 }  // namespace
 
 Topology build_topology(const Model& model) {
@@ -138,6 +182,8 @@ Topology build_topology(const Model& model) {
   }
   build_edges(topology);
   count_faults(topology);
+  build_pairs(topology);
+  build_planes(topology);
   return topology;
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "pipeline/mesh.h"
@@ -49,6 +50,19 @@ struct TopologyFaults {
   }
 };
 
+/// What decides which way each triangle faces, light or no light: its normal cross(b - a, c - a),
+/// not of unit length, and its first corner. An array a component.
+struct TrianglePlanes {
+  std::vector<double> normal_x, normal_y, normal_z;
+  std::vector<float> corner_x, corner_y, corner_z;
+};
+
+/// The two triangles of an edge that is run once each way: `forward` from Edge::a to Edge::b,
+/// `backward` the other way. Both are triangle 0 where an edge is not of that kind.
+struct EdgePair {
+  std::uint32_t forward = 0, backward = 0;
+};
+
 struct Topology {
   std::vector<glm::vec4> positions;
   /// Three a triangle.
@@ -56,6 +70,13 @@ struct Topology {
   std::vector<Edge> edges;
   std::vector<EdgeUse> uses;
   TopologyFaults faults;
+
+  TrianglePlanes planes;
+  /// One an edge, and the edges that are no pair, ascending.
+  std::vector<EdgePair> pairs;
+  std::vector<std::uint32_t> unpaired_edges;
+  /// Bounds of all triangles; without one, low is above high.
+  glm::dvec3 low{0.0}, high{-1.0};
 
   std::size_t triangle_count() const { return indices.size() / 3; }
   std::span<const EdgeUse> uses_of(const Edge& edge) const {

@@ -118,6 +118,43 @@ TEST(ShadowVolume, RadiusIsInMetresOfTheWorld) {
   }
 }
 
+/// The corners of a range of indices, as positions.
+std::vector<glm::vec4> corners(const raster::MeshView& mesh) {
+  std::vector<glm::vec4> result;
+  for (const std::uint32_t index : mesh.indices) result.push_back(mesh.positions[index]);
+  return result;
+}
+
+// Oracle: the volume with both caps, range by range.
+TEST(ShadowVolume, WithoutACapHasTheOtherTrianglesToTheBit) {
+  std::mt19937 random(70);
+  std::vector<Mesh> meshes = {test::torus_mesh(0.6f, 0.2f, 12, 8), test::square_mesh(0.8f)};
+  for (int i = 0; i < 50; ++i) meshes.push_back(soup(random));
+  // One builder and one volume for all: what one mesh leaves there does not reach the next.
+  VolumeBuilder builder;
+  ShadowVolume volume;
+  for (const Mesh& mesh : meshes) {
+    for (const float w : {0.0f, 1.0f}) {
+      const Cast c = cast(mesh, {uniform(random, -2, 2), 2.0f, uniform(random, -2, 2), w});
+      const std::vector<glm::vec4> all =
+          corners(extrude_to_infinity(c.topology, c.silhouette, c.light).view());
+      for (const Caps caps : {Caps{true, true}, {true, false}, {false, true}, {false, false}}) {
+        builder.extrude_to_infinity(c.topology, c.silhouette, c.light, caps, volume);
+        std::vector<glm::vec4> expected = all;
+        const auto begin = expected.begin();
+        const auto cap = static_cast<std::ptrdiff_t>(
+            extrude_to_infinity(c.topology, c.silhouette, c.light).front_cap_indices);
+        const auto sides = static_cast<std::ptrdiff_t>(volume.side_indices);
+        if (!caps.back) expected.erase(begin + cap + sides, expected.end());
+        std::vector<glm::vec4> without_front(begin + cap, expected.end());
+        if (!caps.front) expected = without_front;
+        ASSERT_EQ(corners(volume.view()), expected);
+        ASSERT_EQ(corners(volume.view_without_front_cap()), without_front);
+      }
+    }
+  }
+}
+
 TEST(ShadowVolume, FrontCapHasTheBitsOfTheMesh) {
   const Mesh mesh = test::torus_mesh(0.6f, 0.2f, 12, 8);
   const Cast c = cast(mesh, {0.5f, 8.0f, 1.0f, 1.0f});

@@ -1,6 +1,6 @@
 #include "pipeline/silhouette.h"
 
-#include <set>
+#include <random>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -97,6 +97,74 @@ TEST(Silhouette, LightInAMirroredModelFacesTheSameTriangles) {
     EXPECT_EQ(direct.casting, through.casting);
     EXPECT_EQ(direct.edges, through.edges);
   }
+}
+
+/// Random corners and triangles: edges of any number of triangles, in any direction.
+Mesh soup(std::mt19937& random) {
+  Mesh mesh;
+  const unsigned points = 4 + test::below(random, 9), triangles = 1 + test::below(random, 30);
+  for (unsigned i = 0; i < points; ++i) {
+    mesh.positions.emplace_back(test::uniform_point(random, -1.0f, 1.0f), 1.0f);
+  }
+  for (unsigned i = 0; i < 3 * triangles; ++i) mesh.indices.push_back(test::below(random, points));
+  return mesh;
+}
+
+/// The definition, one triangle and one edge at a time.
+Silhouette by_definition(const Topology& topology, const glm::dvec4& light, bool both_sides) {
+  Silhouette result;
+  for (std::size_t t = 0; t < topology.triangle_count(); ++t) {
+    const auto corner = [&](std::size_t k) {
+      return glm::dvec3(topology.positions[topology.indices[3 * t + k]]);
+    };
+    const glm::dvec3 a = corner(0);
+    const double facing =
+        glm::dot(glm::cross(corner(1) - a, corner(2) - a), glm::dvec3(light) - a * light.w);
+    result.casting.push_back(facing > 0.0 ? 1 : facing < 0.0 && both_sides ? -1 : 0);
+  }
+  for (const Edge& edge : topology.edges) {
+    int sum = 0;
+    for (const EdgeUse& use : topology.uses_of(edge))
+      sum += use.sign * result.casting[use.triangle];
+    if (sum > 0) result.edges.push_back({edge.a, edge.b, sum});
+    if (sum < 0) result.edges.push_back({edge.b, edge.a, -sum});
+  }
+  return result;
+}
+
+// Oracle: the definition, evaluated from the corners; lights in the plane of a triangle too, where
+// one rounding more would decide otherwise.
+TEST(Silhouette, IsTheDefinitionToTheBitForClosedOpenAndNonManifoldMeshes) {
+  std::mt19937 random(71);
+  std::vector<Mesh> meshes = {test::box_mesh(glm::vec3(0.5f)), test::torus_mesh(0.6f, 0.2f, 12, 8),
+                              test::icosphere_mesh(0.7f, 2), test::square_mesh(0.8f)};
+  for (int i = 0; i < 100; ++i) meshes.push_back(soup(random));
+  std::size_t outlines = 0, edge_on = 0;
+  Silhouette silhouette;
+  for (const Mesh& mesh : meshes) {
+    const Topology topology = build_topology(*model_of(mesh));
+    for (int i = 0; i < 20; ++i) {
+      glm::vec3 at = test::uniform_point(random, 2.0f, 4.0f);
+      if (i % 2) at.x = -at.x;
+      const bool in_plane = i % 4 == 0 && topology.triangle_count() > 0;
+      if (in_plane) {
+        const std::uint32_t* corner = &topology.indices[3 * (random() % topology.triangle_count())];
+        const glm::vec3 a(topology.positions[corner[0]]), b(topology.positions[corner[1]]);
+        at = a + (b - a) * 16.0f;
+      }
+      const glm::dvec4 light(glm::dvec3(at), i % 3 == 0 && !in_plane ? 0.0 : 1.0);
+      find_silhouette(topology, light, silhouette);
+      const Silhouette expected = by_definition(topology, light, !topology.closed());
+      ASSERT_EQ(silhouette.casting, expected.casting);
+      ASSERT_EQ(silhouette.edges, expected.edges);
+      outlines += !silhouette.edges.empty();
+      for (const std::int8_t casting : silhouette.casting) {
+        edge_on += casting == 0 && !topology.closed();
+      }
+    }
+  }
+  EXPECT_GT(outlines, 1000u);
+  EXPECT_GT(edge_on, 0u);
 }
 
 TEST(Silhouette, TransformWithoutInverseIsMisuse) {
