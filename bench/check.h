@@ -13,8 +13,7 @@ namespace gnomon::bench {
 
 struct Checked {
   std::vector<Agreement> agreements;
-  /// Hash of the first buffer (colour) of gnomon's plain methods, which all numbers of threads
-  /// share.
+  /// Hash of the first buffer (colour), which all of gnomon's methods and numbers of threads share.
   std::string hash;
 };
 
@@ -25,10 +24,8 @@ Agreement compare(const Subject& subject, const Task& task, const Picture& own,
 /// Throws std::runtime_error, with the figures, when more pixels differ than outlines explain.
 void require_agreement(const Agreement& agreement);
 
-/// Draws a frame in every worker and compares. z-pass and z-fail on infinite volumes must give the
-/// same bytes of colour; the automatic method may move an outline by a rounding, because it ends
-/// volumes where a vertex snaps elsewhere than on the way to infinity, and is held to the bound
-/// that other systems are. Throws std::runtime_error that names what differs.
+/// Draws a frame in every worker and compares. All methods must give the
+/// same bytes of colour. Throws std::runtime_error that names what differs.
 Checked check(const Subject& subject, const std::vector<std::unique_ptr<Worker>>& workers);
 
 }  // namespace gnomon::bench

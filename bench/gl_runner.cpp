@@ -178,7 +178,7 @@ class GlRunner final : public Runner {
       }
     }
     if (subject_.kind != Kind::shadows) return;
-    for (const auto& volume : make_volumes(subject_, objects, method_)) {
+    for (const auto& volume : make_volumes(subject_, objects, method_, 1, nullptr)) {
       volumes_.push_back(
           upload(counted(volume), volume.caster->world_from_model, volume.front_face));
     }

@@ -118,8 +118,10 @@ class GnomonRunner final : public Runner {
     }
   }
 
-  void run(const raster::Frame& frame, std::size_t first, std::size_t end) const {
-    raster::execute(frame, {.threads = threads_, .first_command = first, .commands = end});
+  void run(const raster::Frame& frame, std::size_t first, std::size_t end) {
+    raster::execute(
+        frame,
+        {.threads = threads_, .memory = &execute_memory_, .first_command = first, .commands = end});
   }
 
   Recorded record(Buffers& buffers) {
@@ -150,7 +152,7 @@ class GnomonRunner final : public Runner {
     }
     out.frame.begin_pass("volumes", targets);
     Timer timer;
-    record_volumes(out.frame, subject_, objects, method_);
+    record_volumes(out.frame, subject_, objects, method_, threads_, volume_memory_);
     out.volumes_ms = timer.lap_ms();
     out.frame.begin_pass("shadow", targets);
     raster::State shadow = pipeline::surface_state();
@@ -210,6 +212,8 @@ class GnomonRunner final : public Runner {
   int threads_;
   Buffers buffers_;
   pipeline::TopologyCache topologies_;
+  raster::ExecuteMemory execute_memory_;
+  pipeline::VolumeMemory volume_memory_;
   pipeline::Mesh plane_ = leaning_plane(), layer_ = layer();
 };
 

@@ -30,16 +30,24 @@ void count_sides(raster::Frame& frame, const pipeline::PlacedVolume& volume) {
 
 std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
                                                  std::span<const pipeline::PlacedObject> objects,
-                                                 Method method) {
+                                                 Method method, int threads,
+                                                 pipeline::VolumeMemory* memory) {
   const pipeline::Light& light = subject.scene.lights.at(0);
   if (method == Method::automatic) {
-    return pipeline::make_volumes(objects, light, pipeline::Receivers(subject.scene),
-                                  pipeline::near_region(subject.camera.clip_from_world), {});
+    const pipeline::Camera& camera = subject.camera;
+    return pipeline::make_volumes(
+        objects, light, {}, pipeline::near_region(camera.clip_from_world),
+        {.counts = pipeline::Counts::at_receivers,
+         .view = pipeline::View{camera.clip_from_world, camera.width, camera.height},
+         .threads = threads,
+         .memory = memory});
   }
   return pipeline::make_volumes(
       objects, light, {}, std::nullopt,
       {.method = method == Method::zpass ? VolumeMethod::zpass : VolumeMethod::zfail,
-       .extrusion = {.kind = pipeline::Extrusion::Kind::infinite}});
+       .extrusion = {.kind = pipeline::Extrusion::Kind::infinite},
+       .threads = threads,
+       .memory = memory});
 }
 
 bool shows_one_side(const pipeline::PlacedObject& object) {
@@ -56,8 +64,9 @@ raster::MeshView counted(const pipeline::PlacedVolume& volume) {
 }
 
 void record_volumes(raster::Frame& frame, const Subject& subject,
-                    std::span<const pipeline::PlacedObject> objects, Method method) {
-  const auto volumes = make_volumes(subject, objects, method);
+                    std::span<const pipeline::PlacedObject> objects, Method method, int threads,
+                    pipeline::VolumeMemory& memory) {
+  const auto volumes = make_volumes(subject, objects, method, threads, &memory);
   if (method != Method::zpass) return pipeline::count_volumes(frame, volumes, {});
   for (const pipeline::PlacedVolume& volume : volumes) count_sides(frame, volume);
 }

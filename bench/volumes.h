@@ -12,10 +12,12 @@
 
 namespace gnomon::bench {
 
-/// zpass and zfail: to infinity, for every caster. auto: what the pipeline takes.
+/// zpass and zfail: to infinity, for every caster. auto: what the pipeline takes where only the
+/// picture counts (pipeline::Counts::at_receivers). `memory` may be null.
 std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
                                                  std::span<const pipeline::PlacedObject> objects,
-                                                 Method method);
+                                                 Method method, int threads,
+                                                 pipeline::VolumeMemory* memory);
 
 /// Its back faces can be culled: a closed surface that the eye is outside of.
 bool shows_one_side(const pipeline::PlacedObject& object);
@@ -26,6 +28,7 @@ raster::MeshView counted(const pipeline::PlacedVolume& volume);
 /// Makes the volumes of this frame and records their counting draws. All that gnomon needs a frame
 /// and peers are spared is in here.
 void record_volumes(raster::Frame& frame, const Subject& subject,
-                    std::span<const pipeline::PlacedObject> objects, Method method);
+                    std::span<const pipeline::PlacedObject> objects, Method method, int threads,
+                    pipeline::VolumeMemory& memory);
 
 }  // namespace gnomon::bench
