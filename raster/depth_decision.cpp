@@ -96,4 +96,22 @@ DepthInterval bounds_in_box(const TileDepth& plane, const BlockDepths& depths,
           std::clamp(p.up(p.base + right + top), depths.least, depths.greatest)};
 }
 
+DepthInterval depths_of_block(const TileDepth& plane, std::size_t b) {
+  // Rounding keeps the order, so the extremes are at corners; modulo 2^64 their values are right,
+  // because corners that are covered have depths.
+  const auto dx = static_cast<std::int64_t>(plane.step_x * (kBlockSize - 1));
+  const auto dy = static_cast<std::int64_t>(plane.step_y * (kBlockSize - 1));
+  const std::uint64_t corner = plane.base + b % kBlocksPerTileRow * kBlockSize * plane.step_x +
+                               b / kBlocksPerTileRow * kBlockSize * plane.step_y;
+  const auto depth = [&](std::int64_t along_x, std::int64_t along_y) {
+    const std::uint64_t value =
+        corner + static_cast<std::uint64_t>(along_x) + static_cast<std::uint64_t>(along_y);
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(
+        static_cast<std::int64_t>(value) >> plane.fraction_bits, plane.low, plane.high));
+  };
+  const std::int64_t zero = 0;
+  return {depth(std::min(dx, zero), std::min(dy, zero)),
+          depth(std::max(dx, zero), std::max(dy, zero))};
+}
+
 }  // namespace gnomon::raster

@@ -37,4 +37,7 @@ BlockDepths bound_plane(const TileDepth& plane, std::int32_t least, std::int32_t
 /// Bounds over a box in the tile's pixels, of the plane that `depths` came from.
 DepthInterval bounds_in_box(const TileDepth& plane, const BlockDepths& depths, const PixelBox& box);
 
+/// The least and greatest depth of the plane in block b, exactly, if all 64 pixels are covered.
+DepthInterval depths_of_block(const TileDepth& plane, std::size_t b);
+
 }  // namespace gnomon::raster

@@ -350,8 +350,23 @@ void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& sourc
   }
   const BlockMask passed = kernels_.test_blocks(face.tests, tested, covered.data());
   if (face.tests.depth_test && face.tests.depth_write)
-    for_each_block_of(passed, [&](std::size_t b) { pixels_.ranges().forget(b); });
+    note_depths(tested.plane, passed, covered.data());
   if (fragments_.color) color_blocks(triangle, source, passed, covered.data());
+}
+
+/// Keeps the ranges true after the pixels of the blocks got the plane's depths.
+void DrawInTile::note_depths(const TileDepth& plane, BlockMask blocks,
+                             const PixelMask* written) const {
+  DepthRanges& ranges = pixels_.ranges();
+  for_each_block_of(blocks, [&](std::size_t b) {
+    if (written[b] != kAllPixels) {
+      ranges.forget(b);
+      return;
+    }
+    const DepthInterval depths = depths_of_block(plane, b);
+    ranges.set(b, static_cast<std::uint32_t>(depths.least),
+               static_cast<std::uint32_t>(depths.greatest));
+  });
 }
 
 /// Counts the blocks that the triangle fills and marks as a whole, and returns the others.

@@ -68,6 +68,7 @@ class DrawInTile {
                          const TestedBlocks& tested);
   BlockMask cover_blocks(const SetupTriangle& triangle, const TileEdges* edges, BlockMask blocks,
                          BlockMask filled, PixelMask* covered) const;
+  void note_depths(const TileDepth& plane, BlockMask blocks, const PixelMask* written) const;
   void set_plane(const SetupTriangle& triangle, TestedBlocks& tested) const;
   BlockMask blocks_with_stencil(const FaceSetup& face);
   void color_blocks(const SetupTriangle& triangle, const TriangleSource& source, BlockMask blocks,
