@@ -249,13 +249,13 @@ void DrawInTile::decide_tile(const FaceSetup& face, std::int32_t least, std::int
   }
 }
 
-/// The same block by block, for a few by the vertices alone.
+/// The same block by block, for a few by the vertices alone and where a range is known: to find one
+/// costs as much as to test the block.
 void DrawInTile::decide_few(const DepthInterval& bounds, const FaceSetup& face, BlockMask blocks,
                             TestedBlocks& tested) const {
-  pixels_.know_ranges(blocks);
   const DepthRanges& ranges = pixels_.ranges();
   const DepthDecision decision(face.tests.depth_func);
-  for_each_block_of(blocks, [&](std::size_t b) {
+  for_each_block_of(blocks & ranges.known, [&](std::size_t b) {
     const DepthOutcome outcome =
         decision.of(bounds.least, bounds.greatest, ranges.least[b], ranges.greatest[b]);
     if (outcome == DepthOutcome::passes) tested.depth_passes |= BlockMask{1} << b;

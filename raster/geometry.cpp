@@ -64,6 +64,16 @@ struct Corner {
   glm::dvec3 weights{0.0};
 };
 
+/// No pixel centre of a tiny box lies inside the triangle, whose vertices go counter-clockwise.
+bool misses_all(const SetupTriangle& triangle) {
+  constexpr int kTiny = 2;
+  if (triangle.x1 - triangle.x0 > kTiny || triangle.y1 - triangle.y0 > kTiny) return false;
+  for (int y = triangle.y0; y < triangle.y1; ++y)
+    for (int x = triangle.x0; x < triangle.x1; ++x)
+      if (triangle.covers(x, y)) return false;
+  return true;
+}
+
 /// Sets up one snapped triangle; false if it covers no pixel or is culled.
 bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVertex& v1,
             const ProjectedVertex& v2, SetupTriangle& out) {
@@ -86,6 +96,7 @@ bool set_up(const DrawSetup& setup, const ProjectedVertex& v0, const ProjectedVe
       x_max - x_min < SetupTriangle::kSmall * 256 && y_max - y_min < SetupTriangle::kSmall * 256;
   out.swapped = area < 0;
   out.vertices = {s0, out.swapped ? s2 : s1, out.swapped ? s1 : s2};
+  if (misses_all(out)) return false;
   const DepthPlane plane = make_depth_plane(out.vertices, std::abs(area), state.polygon_offset,
                                             setup.depth_format, setup.depth_low, setup.depth_high);
   out.step_x = plane.step_x;
