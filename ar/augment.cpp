@@ -1,9 +1,8 @@
 #include "ar/augment.h"
 
-#include <chrono>
-
 #include "ar/composite.h"
 #include "ar/false_color.h"
+#include "ar/stopwatch.h"
 #include "pipeline/light_samples.h"
 #include "raster/execute.h"
 #include "raster/frame_format.h"
@@ -11,20 +10,6 @@
 namespace gnomon::ar {
 
 namespace {
-
-/// Milliseconds since it was made or last asked.
-class Stopwatch {
- public:
-  double lap_ms() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// A mask of the view in the photograph: a pixel belongs to it where at least half of its area
 /// does.

@@ -22,8 +22,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "ar/stopwatch.h"
 #include "bench/runner.h"
-#include "bench/timer.h"
 #include "pipeline/ray_reference.h"
 
 namespace gnomon::bench {
@@ -84,7 +84,7 @@ class EmbreeRunner final : public Runner {
   StageTimes frame() override {
     StageTimes times;
     arena_.execute([&] {
-      Timer timer;
+      ar::Stopwatch timer;
       build();
       for_tiles([this](std::size_t, int x, int y) {
         Packet packet;

@@ -13,9 +13,9 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "ar/stopwatch.h"
 #include "bench/layer.h"
 #include "bench/runner.h"
-#include "bench/timer.h"
 #include "bench/volumes.h"
 #include "peer/osmesa/osmesa_context.h"
 
@@ -116,7 +116,7 @@ class GlRunner final : public Runner {
   StageTimes frame() override {
     StageTimes times;
     glFinish();
-    Timer timer;
+    ar::Stopwatch timer;
     for (const Stage stage : stages()) run(stage);
     glFinish();
     at(times, Stage::frame) = timer.lap_ms();

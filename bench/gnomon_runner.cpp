@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ar/stopwatch.h"
 #include "bench/layer.h"
 #include "bench/runner.h"
-#include "bench/timer.h"
 #include "bench/volumes.h"
 #include "golden/hash.h"
 #include "pipeline/placed_object.h"
@@ -47,7 +47,7 @@ class GnomonRunner final : public Runner {
 
   StageTimes frame() override {
     StageTimes times;
-    Timer timer;
+    ar::Stopwatch timer;
     const Recorded whole = record(buffers_);
     run(whole.frame, 0, whole.frame.command_count());
     at(times, Stage::frame) = timer.lap_ms();
@@ -151,7 +151,7 @@ class GnomonRunner final : public Runner {
                          surface);
     }
     out.frame.begin_pass("volumes", targets);
-    Timer timer;
+    ar::Stopwatch timer;
     record_volumes(out.frame, subject_, objects, method_, threads_, volume_memory_);
     out.volumes_ms = timer.lap_ms();
     out.frame.begin_pass("shadow", targets);

@@ -1,7 +1,7 @@
 #include "bench/turns.h"
 
+#include "ar/stopwatch.h"
 #include "bench/statistics.h"
-#include "bench/timer.h"
 
 namespace gnomon::bench {
 namespace {
@@ -35,7 +35,7 @@ std::vector<Series> take_turns(const std::vector<std::unique_ptr<Worker>>& worke
   for (int turn = 0; turn < options.frames; ++turn) {
     for (std::size_t i = 0; i < workers.size(); ++i) {
       if (spent_s[i] > options.cap_s && all[i].frames >= kFewestFrames) continue;
-      Timer timer;
+      ar::Stopwatch timer;
       if (at(last[i], Stage::frame).value_or(0.0) < kShort_ms) workers[i]->frame();
       last[i] = workers[i]->frame();
       spent_s[i] += timer.lap_ms() / 1000.0;

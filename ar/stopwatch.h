@@ -3,11 +3,11 @@
 
 #include <chrono>
 
-namespace gnomon::bench {
+namespace gnomon::ar {
 
-class Timer {
+class Stopwatch {
  public:
-  /// Milliseconds since the start or the last lap.
+  /// Milliseconds since it was made or last asked.
   double lap_ms() {
     const auto now = std::chrono::steady_clock::now();
     const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
@@ -19,4 +19,4 @@ class Timer {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace gnomon::bench
+}  // namespace gnomon::ar
