@@ -180,7 +180,7 @@ class GlRunner final : public Runner {
     if (subject_.kind != Kind::shadows) return;
     for (const auto& volume : make_volumes(subject_, objects, method_, 1, nullptr)) {
       volumes_.push_back(
-          upload(counted(volume), volume.caster->world_from_model, volume.front_face));
+          upload(volume.volume->view(), volume.caster->world_from_model, volume.front_face));
     }
   }
 

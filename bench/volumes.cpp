@@ -11,21 +11,6 @@ namespace {
 
 using pipeline::VolumeMethod;
 
-/// The count on depth pass wants no caps where the eye is outside the volume: what pipeline records
-/// for z-pass, on the sides alone.
-void count_sides(raster::Frame& frame, const pipeline::PlacedVolume& volume) {
-  frame.keep(volume.volume);
-  raster::StencilFace front, back;
-  front.pass = raster::StencilOp::incr_wrap;
-  back.pass = raster::StencilOp::decr_wrap;
-  raster::State state = pipeline::surface_state();
-  state.depth = raster::DepthState{.func = raster::CompareFunc::less, .write = false};
-  state.color = raster::ColorState::off();
-  state.front_face = volume.front_face;
-  state.stencil = raster::StencilState{front, back};
-  frame.draw({.state = state, .mesh = counted(volume), .clip_from_model = volume.clip_from_model});
-}
-
 }  // namespace
 
 std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
@@ -54,21 +39,10 @@ bool shows_one_side(const pipeline::PlacedObject& object) {
   return object.topology->faults.closed_manifold();
 }
 
-raster::MeshView counted(const pipeline::PlacedVolume& volume) {
-  raster::MeshView view = volume.volume->view();
-  if (volume.method == VolumeMethod::zpass) {
-    view.indices =
-        view.indices.subspan(volume.volume->front_cap_indices, volume.volume->side_indices);
-  }
-  return view;
-}
-
 void record_volumes(raster::Frame& frame, const Subject& subject,
                     std::span<const pipeline::PlacedObject> objects, Method method, int threads,
                     pipeline::VolumeMemory& memory) {
-  const auto volumes = make_volumes(subject, objects, method, threads, &memory);
-  if (method != Method::zpass) return pipeline::count_volumes(frame, volumes, {});
-  for (const pipeline::PlacedVolume& volume : volumes) count_sides(frame, volume);
+  pipeline::count_volumes(frame, make_volumes(subject, objects, method, threads, &memory), {});
 }
 
 }  // namespace gnomon::bench

@@ -12,8 +12,8 @@
 
 namespace gnomon::bench {
 
-/// zpass and zfail: to infinity, for every caster. auto: what the pipeline takes where only the
-/// picture counts (pipeline::Counts::at_receivers). `memory` may be null.
+/// zpass and zfail: to infinity, for every caster; zpass without caps. auto: what the pipeline
+/// takes where only the picture counts (pipeline::Counts::at_receivers). `memory` may be null.
 std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
                                                  std::span<const pipeline::PlacedObject> objects,
                                                  Method method, int threads,
@@ -21,9 +21,6 @@ std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
 
 /// Its back faces can be culled: a closed surface that the eye is outside of.
 bool shows_one_side(const pipeline::PlacedObject& object);
-
-/// The triangles that the method needs: the sides alone for z-pass, the closed volume for z-fail.
-raster::MeshView counted(const pipeline::PlacedVolume& volume);
 
 /// Makes the volumes of this frame and records their counting draws. All that gnomon needs a frame
 /// and peers are spared is in here.

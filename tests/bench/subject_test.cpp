@@ -18,7 +18,7 @@ std::size_t volume_triangles(const Subject& subject, Method method) {
   const auto objects = pipeline::place_objects(subject.scene, subject.camera, topologies);
   std::size_t count = 0;
   for (const auto& volume : make_volumes(subject, objects, method, 1, nullptr)) {
-    count += counted(volume).indices.size() / 3;
+    count += volume.volume->indices.size() / 3;
   }
   return count;
 }
