@@ -52,22 +52,12 @@ Cast cast(const Mesh& mesh, const glm::vec4& light, const glm::mat4& world = glm
   return result;
 }
 
-Mesh soup(std::mt19937& random) {
-  Mesh mesh;
-  const unsigned points = 4 + test::below(random, 9), triangles = 1 + test::below(random, 30);
-  for (unsigned i = 0; i < points; ++i) {
-    mesh.positions.emplace_back(test::uniform_point(random, -1.0f, 1.0f), 1.0f);
-  }
-  for (unsigned i = 0; i < 3 * triangles; ++i) mesh.indices.push_back(test::below(random, points));
-  return mesh;
-}
-
 // Oracle: the boundary of a boundary is nothing.
 TEST(ShadowVolume, IsAClosedChainForClosedOpenAndNonManifoldMeshes) {
   std::mt19937 random(7);
   std::vector<Mesh> meshes = {test::box_mesh(glm::vec3(0.5f)), test::torus_mesh(0.6f, 0.2f, 12, 8),
                               test::icosphere_mesh(0.7f, 1), test::square_mesh(0.8f)};
-  for (int i = 0; i < 200; ++i) meshes.push_back(soup(random));
+  for (int i = 0; i < 200; ++i) meshes.push_back(test::soup(random));
   std::size_t volumes = 0;
   for (const Mesh& mesh : meshes) {
     for (const float w : {0.0f, 1.0f}) {
@@ -129,7 +119,7 @@ std::vector<glm::vec4> corners(const raster::MeshView& mesh) {
 TEST(ShadowVolume, WithoutACapHasTheOtherTrianglesToTheBit) {
   std::mt19937 random(70);
   std::vector<Mesh> meshes = {test::torus_mesh(0.6f, 0.2f, 12, 8), test::square_mesh(0.8f)};
-  for (int i = 0; i < 50; ++i) meshes.push_back(soup(random));
+  for (int i = 0; i < 50; ++i) meshes.push_back(test::soup(random));
   // One builder and one volume for all: what one mesh leaves there does not reach the next.
   VolumeBuilder builder;
   ShadowVolume volume;

@@ -99,17 +99,6 @@ TEST(Silhouette, LightInAMirroredModelFacesTheSameTriangles) {
   }
 }
 
-/// Random corners and triangles: edges of any number of triangles, in any direction.
-Mesh soup(std::mt19937& random) {
-  Mesh mesh;
-  const unsigned points = 4 + test::below(random, 9), triangles = 1 + test::below(random, 30);
-  for (unsigned i = 0; i < points; ++i) {
-    mesh.positions.emplace_back(test::uniform_point(random, -1.0f, 1.0f), 1.0f);
-  }
-  for (unsigned i = 0; i < 3 * triangles; ++i) mesh.indices.push_back(test::below(random, points));
-  return mesh;
-}
-
 /// The definition, one triangle and one edge at a time.
 Silhouette by_definition(const Topology& topology, const glm::dvec4& light, bool both_sides) {
   Silhouette result;
@@ -138,7 +127,7 @@ TEST(Silhouette, IsTheDefinitionToTheBitForClosedOpenAndNonManifoldMeshes) {
   std::mt19937 random(71);
   std::vector<Mesh> meshes = {test::box_mesh(glm::vec3(0.5f)), test::torus_mesh(0.6f, 0.2f, 12, 8),
                               test::icosphere_mesh(0.7f, 2), test::square_mesh(0.8f)};
-  for (int i = 0; i < 100; ++i) meshes.push_back(soup(random));
+  for (int i = 0; i < 100; ++i) meshes.push_back(test::soup(random));
   std::size_t outlines = 0, edge_on = 0;
   Silhouette silhouette;
   for (const Mesh& mesh : meshes) {

@@ -145,6 +145,16 @@ glm::vec3 uniform_point(std::mt19937& random, float low, float high) {
   return {x, y, uniform(random, low, high)};
 }
 
+pipeline::Mesh soup(std::mt19937& random) {
+  pipeline::Mesh mesh;
+  const unsigned points = 4 + below(random, 9), triangles = 1 + below(random, 30);
+  for (unsigned i = 0; i < points; ++i) {
+    mesh.positions.emplace_back(uniform_point(random, -1.0f, 1.0f), 1.0f);
+  }
+  for (unsigned i = 0; i < 3 * triangles; ++i) mesh.indices.push_back(below(random, points));
+  return mesh;
+}
+
 pipeline::Scene random_scene(std::mt19937& random) {
   pipeline::Scene scene;
   scene.objects.push_back({.name = "plate",

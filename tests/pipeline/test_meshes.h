@@ -45,6 +45,9 @@ float uniform(std::mt19937& random, float low, float high);
 unsigned below(std::mt19937& random, std::size_t count);
 glm::vec3 uniform_point(std::mt19937& random, float low, float high);
 
+/// Random corners and triangles: edges of any number of triangles, in any direction.
+pipeline::Mesh soup(std::mt19937& random);
+
 /// A ground plate and 2 to 5 closed bodies (boxes, tori, spheres; turned, scaled, some mirrored)
 /// above it, by turns phantoms and virtual; one light above, a point or a direction.
 pipeline::Scene random_scene(std::mt19937& random);
