@@ -101,8 +101,8 @@ DepthInterval depths_of_block(const TileDepth& plane, std::size_t b) {
   // because corners that are covered have depths.
   const auto dx = static_cast<std::int64_t>(plane.step_x * (kBlockSize - 1));
   const auto dy = static_cast<std::int64_t>(plane.step_y * (kBlockSize - 1));
-  const std::uint64_t corner = plane.base + b % kBlocksPerTileRow * kBlockSize * plane.step_x +
-                               b / kBlocksPerTileRow * kBlockSize * plane.step_y;
+  const std::uint64_t corner = plane.base + static_cast<std::uint64_t>(block_x(b)) * plane.step_x +
+                               static_cast<std::uint64_t>(block_y(b)) * plane.step_y;
   const auto depth = [&](std::int64_t along_x, std::int64_t along_y) {
     const std::uint64_t value =
         corner + static_cast<std::uint64_t>(along_x) + static_cast<std::uint64_t>(along_y);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "raster/depth_decision.h"
 #include "raster/interpolate.h"
 
 namespace gnomon::raster {
@@ -67,6 +66,7 @@ FaceSetup make_face_setup(const FragmentTests& tests, bool color) {
   face.pass_marks = fail_writes || color || (tests.depth_test && tests.depth_write) ||
                     writes(tests, stencil.pass);
   face.fail_marks = fail_writes || writes(tests, stencil.depth_fail);
+  face.decision = DepthDecision(tests.depth_func);
   face.depth_always = !tests.depth_test || tests.depth_func == CompareFunc::always;
   face.depth_never = tests.depth_test && tests.depth_func == CompareFunc::never;
   if (!passes_all || !tests.depth_test || tests.depth_write || color ||
@@ -106,25 +106,15 @@ enum class Cover { none, in_32_bits, in_64_bits };
 /// was rounded in a cut (raster/clip.h) can lie farther out.
 Cover cross_tile(const SetupTriangle& triangle, int x0, int y0, TileEdges& edges) {
   constexpr std::int64_t kSteepest = std::int64_t{1} << 25;
-  if (triangle.small) {
-    // Steps are below 2^13 and the tile's first pixel is nearer than 2^15: sums fit 32 bits.
-    edges.count = 3;
-    for (int k = 0; k < 3; ++k) {
-      const Edge edge = triangle.edge(k);
-      const std::int32_t value =
-          edge.a * (x0 * 256 + 128 - edge.x0) + edge.b * (y0 * 256 + 128 - edge.y0) - edge.bias();
-      edges.value[k] = value >> 8;
-      edges.step_x[k] = edge.a;
-      edges.step_y[k] = edge.b;
-    }
-    return Cover::in_32_bits;
-  }
   Cover cover = Cover::in_32_bits;
   for (int k = 0; k < 3; ++k) {
     const TileEdge edge = edge_at_tile(triangle, k, x0, y0);
-    if (edge.greatest(0, 0, kTileSize - 1) < 0) return Cover::none;
-    if (edge.least(0, 0, kTileSize - 1) >= 0) continue;
-    if (std::abs(edge.a) + std::abs(edge.b) >= kSteepest) cover = Cover::in_64_bits;
+    // A small triangle's edges are all near enough for 32 bits and are not worth sorting out.
+    if (!triangle.small) {
+      if (edge.greatest(0, 0, kTileSize - 1) < 0) return Cover::none;
+      if (edge.least(0, 0, kTileSize - 1) >= 0) continue;
+      if (std::abs(edge.a) + std::abs(edge.b) >= kSteepest) cover = Cover::in_64_bits;
+    }
     const int i = edges.count++;
     edges.value[i] = static_cast<std::int32_t>(edge.value);
     edges.step_x[i] = static_cast<std::int32_t>(edge.a);
@@ -143,8 +133,7 @@ BlockMask cover_pixels_in_64_bits(const SetupTriangle& triangle, int x0, int y0,
   for_each_block_of(blocks, [&](std::size_t b) {
     covered[b] = 0;
     for (int i = 0; i < kPixelsPerBlock; ++i) {
-      const int x = static_cast<int>(b) % kBlocksPerTileRow * kBlockSize + i % kBlockSize;
-      const int y = static_cast<int>(b) / kBlocksPerTileRow * kBlockSize + i / kBlockSize;
+      const int x = block_x(b) + i % kBlockSize, y = block_y(b) + i / kBlockSize;
       if (std::all_of(edges.begin(), edges.end(),
                       [&](const TileEdge& edge) { return edge.least(x, y, 0) >= 0; }))
         covered[b] |= PixelMask{1} << i;
@@ -236,8 +225,7 @@ void DrawInTile::decide_tile(const FaceSetup& face, std::int32_t least, std::int
   if (face.tests.depth_write) return;
   pixels_.know_whole_range();
   const DepthRanges& ranges = pixels_.ranges();
-  const DepthDecision decision(face.tests.depth_func);
-  switch (decision.of(least, greatest, ranges.whole_least, ranges.whole_greatest)) {
+  switch (face.decision.of(least, greatest, ranges.whole_least, ranges.whole_greatest)) {
     case DepthOutcome::passes:
       tested.depth_passes = kAllBlocks;
       break;
@@ -254,10 +242,9 @@ void DrawInTile::decide_tile(const FaceSetup& face, std::int32_t least, std::int
 void DrawInTile::decide_few(const DepthInterval& bounds, const FaceSetup& face, BlockMask blocks,
                             TestedBlocks& tested) const {
   const DepthRanges& ranges = pixels_.ranges();
-  const DepthDecision decision(face.tests.depth_func);
   for_each_block_of(blocks & ranges.known, [&](std::size_t b) {
     const DepthOutcome outcome =
-        decision.of(bounds.least, bounds.greatest, ranges.least[b], ranges.greatest[b]);
+        face.decision.of(bounds.least, bounds.greatest, ranges.least[b], ranges.greatest[b]);
     if (outcome == DepthOutcome::passes) tested.depth_passes |= BlockMask{1} << b;
     if (outcome == DepthOutcome::fails) tested.depth_fails |= BlockMask{1} << b;
   });
@@ -267,10 +254,10 @@ void DrawInTile::decide_blocks(const FaceSetup& face, const BlockDepths& depths,
                                TestedBlocks& tested) const {
   pixels_.know_ranges(blocks);
   const DepthRanges& ranges = pixels_.ranges();
-  const DepthDecision decision(face.tests.depth_func);
-  decision.settle(kernels_.compare_ranges(depths, ranges.least.data(), ranges.greatest.data(),
-                                          decision.below_slack, decision.above_slack),
-                  tested);
+  face.decision.settle(
+      kernels_.compare_ranges(depths, ranges.least.data(), ranges.greatest.data(),
+                              face.decision.below_slack, face.decision.above_slack),
+      tested);
 }
 
 BlockMask DrawInTile::blocks_with_stencil(const FaceSetup& face) {
@@ -391,8 +378,7 @@ BlockMask DrawInTile::cover_blocks(const SetupTriangle& triangle, const TileEdge
   if (whole_) return blocks;
   BlockMask touched = 0;
   for_each_block_of(blocks, [&](std::size_t b) {
-    covered[b] &= box_mask(setup_.box, x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize,
-                           y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize);
+    covered[b] &= box_mask(setup_.box, x0_ + block_x(b), y0_ + block_y(b));
     if (covered[b]) touched |= BlockMask{1} << b;
   });
   return touched;
@@ -429,8 +415,7 @@ void DrawInTile::color_blocks(const SetupTriangle& triangle, const TriangleSourc
 void DrawInTile::shade_pixels(const SetupTriangle& triangle, const TriangleSource& source,
                               std::size_t b, PixelMask pixels, ColorPlanes& colors) const {
   const Draw& draw = *setup_.draw;
-  const int x = x0_ + static_cast<int>(b) % kBlocksPerTileRow * kBlockSize;
-  const int y = y0_ + static_cast<int>(b) / kBlocksPerTileRow * kBlockSize;
+  const int x = x0_ + block_x(b), y = y0_ + block_y(b);
   for_each_pixel(pixels, [&](std::size_t i) {
     const int px = x + static_cast<int>(i) % kBlockSize, py = y + static_cast<int>(i) / kBlockSize;
     set_color(colors, i, shade(draw.shading, interpolate(draw, triangle, source, px, py)));

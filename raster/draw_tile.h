@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "raster/depth_decision.h"
 #include "raster/frame.h"
 #include "raster/geometry.h"
 #include "raster/kernels.h"
@@ -18,6 +19,7 @@ struct FaceSetup {
   FragmentTests tests;
   /// A fragment that passes (or fails) the depth test can leave a mark in some buffer.
   bool pass_marks = false, fail_marks = false;
+  DepthDecision decision{CompareFunc::always};
   /// Every fragment passes (or fails) the depth test, whatever the depths are.
   bool depth_always = true, depth_never = false;
   /// The stencil test lets some fragments through and the draw changes no stencil, so blocks can

@@ -74,9 +74,8 @@ std::uint8_t apply(StencilOp op, std::uint8_t value, std::uint8_t ref) {
 
 /// The 64 depths of block b.
 void depth_values(const TileDepth& plane, std::size_t b, std::uint32_t (&out)[kPixelsPerBlock]) {
-  const std::uint64_t x0 = b % kBlocksPerTileRow * kBlockSize,
-                      y0 = b / kBlocksPerTileRow * kBlockSize;
-  const std::uint64_t base = plane.base + x0 * plane.step_x + y0 * plane.step_y;
+  const std::uint64_t base = plane.base + static_cast<std::uint64_t>(block_x(b)) * plane.step_x +
+                             static_cast<std::uint64_t>(block_y(b)) * plane.step_y;
   if (plane.narrow) {
     const auto low_base = static_cast<std::uint32_t>(base);
     const auto step_x = static_cast<std::uint32_t>(plane.step_x);
@@ -126,8 +125,7 @@ BlockMask cover_blocks(const TileEdges& edges, BlockMask& filled) noexcept {
 BlockMask cover_pixels(const TileEdges& edges, BlockMask blocks, PixelMask* covered) noexcept {
   BlockMask touched = 0;
   for_each_block_of(blocks, [&](std::size_t b) {
-    const int x = static_cast<int>(b) % kBlocksPerTileRow * kBlockSize;
-    const int y = static_cast<int>(b) / kBlocksPerTileRow * kBlockSize;
+    const int x = block_x(b), y = block_y(b);
     PixelMask outside = 0;
     for (int k = 0; k < edges.count; ++k)
       outside |= negative(edges.value[k] + x * edges.step_x[k] + y * edges.step_y[k],

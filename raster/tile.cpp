@@ -47,13 +47,13 @@ void clear_tile(const Clear& clear, TilePixels& pixels) noexcept {
   std::optional<BlockWriter> writer;
   if (color) writer.emplace(pixels.kernels(), *targets.color, pixels.tile(), color_state);
   for_each_block(scissor_box(clear.scissor, targets.width(), targets.height()), pixels.tile(),
-                 [&](int, int, std::size_t offset, PixelMask mask) {
-                   const std::size_t block = offset / kPixelsPerBlock;
+                 [&](std::size_t block, PixelMask mask) {
                    if (color) writer->write(block, mask, *clear.color);
                    if (depth) clear_depths(depth_value, block, mask, pixels);
                    if (clear.stencil)
                      clear_stencils(static_cast<std::uint8_t>(*clear.stencil),
-                                    clear.stencil_write_mask, mask, pixels.stencil() + offset);
+                                    clear.stencil_write_mask, mask,
+                                    pixels.stencil() + block * kPixelsPerBlock);
                  });
 }
 
@@ -66,14 +66,14 @@ void blit_tile(const Blit& blit, TilePixels& pixels) noexcept {
       intersect(image_box, scissor_box(blit.scissor, target.width(), target.height()));
   const ColorState state{blit.color_write, {}};
   const BlockWriter writer(pixels.kernels(), target, tile, state);
-  for_each_block(box, tile, [&](int x, int y, std::size_t offset, PixelMask mask) {
+  for_each_block(box, tile, [&](std::size_t block, PixelMask mask) {
+    const int x = tile.x * kTileSize + block_x(block), y = tile.y * kTileSize + block_y(block);
     const auto pixel = [&](std::size_t i) -> Rgba8 {
       const int px = x + static_cast<int>(i) % kBlockSize,
                 py = y + static_cast<int>(i) / kBlockSize;
       const std::uint8_t* c = blit.image.pixel(px - blit.x, py - blit.y);
       return {c[0], c[1], c[2], blit.image.channels == 4 ? c[3] : std::uint8_t{0}};
     };
-    const std::size_t block = offset / kPixelsPerBlock;
     if (writer.is_rgba8()) {
       Rgba8Block source;
       for_each_pixel(mask, [&](std::size_t i) { source[i] = pixel(i); });

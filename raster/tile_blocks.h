@@ -15,11 +15,6 @@ struct TileIndex {
   int x = 0, y = 0;
 };
 
-/// Offset of a block in a tile-linear plane, from its coordinates inside the tile in blocks.
-inline std::size_t block_offset(int bx, int by) {
-  return static_cast<std::size_t>(by * kBlocksPerTileRow + bx) * kPixelsPerBlock;
-}
-
 inline PixelBox tile_box(TileIndex tile) {
   return {tile.x * kTileSize, tile.y * kTileSize, (tile.x + 1) * kTileSize,
           (tile.y + 1) * kTileSize};
@@ -38,8 +33,8 @@ inline PixelMask box_mask(const PixelBox& box, int x0, int y0) {
   return mask;
 }
 
-/// Calls body(block's first pixel x, y, offset in the tile, mask of the box's pixels) for each 8x8
-/// block that a box touches.
+/// Calls body(number of the block in the tile, mask of the box's pixels) for each 8x8 block that a
+/// box touches.
 template <class Body>
 void for_each_block(const PixelBox& box, TileIndex tile, Body body) {
   const PixelBox inside = intersect(box, tile_box(tile));
@@ -47,8 +42,8 @@ void for_each_block(const PixelBox& box, TileIndex tile, Body body) {
   const int x0 = tile.x * kTileSize, y0 = tile.y * kTileSize;
   for (int by = (inside.y0 - y0) / kBlockSize; by <= (inside.y1 - 1 - y0) / kBlockSize; ++by)
     for (int bx = (inside.x0 - x0) / kBlockSize; bx <= (inside.x1 - 1 - x0) / kBlockSize; ++bx) {
-      const int x = x0 + bx * kBlockSize, y = y0 + by * kBlockSize;
-      body(x, y, block_offset(bx, by), box_mask(inside, x, y));
+      const auto block = static_cast<std::size_t>(by * kBlocksPerTileRow + bx);
+      body(block, box_mask(inside, x0 + block_x(block), y0 + block_y(block)));
     }
 }
 

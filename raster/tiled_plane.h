@@ -16,6 +16,13 @@ inline constexpr int kBlocksPerTileRow = kTileSize / kBlockSize;
 inline constexpr int kBlocksPerTile = kBlocksPerTileRow * kBlocksPerTileRow;
 inline constexpr int kPixelsPerBlock = kBlockSize * kBlockSize;
 inline constexpr int kPixelsPerTile = kTileSize * kTileSize;
+/// Where block number `block` of a tile begins, in pixels of the tile.
+constexpr int block_x(std::size_t block) {
+  return static_cast<int>(block) % kBlocksPerTileRow * kBlockSize;
+}
+constexpr int block_y(std::size_t block) {
+  return static_cast<int>(block) / kBlocksPerTileRow * kBlockSize;
+}
 /// Largest width and height of a target in pixels.
 inline constexpr int kMaxTargetSize = 16384;
 
