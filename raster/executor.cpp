@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -11,21 +12,41 @@ namespace gnomon::raster {
 
 namespace {
 
+/// A thread's share of a phase's pieces, on a cache line of its own: who finds his own share done
+/// takes from it too.
+struct alignas(64) Share {
+  std::atomic<std::size_t> next{0};
+  std::size_t end = 0;
+};
+
 /// Pieces of one phase as threads take and finish them.
 struct Progress {
-  std::atomic<std::size_t> next{0}, finished{0};
+  std::vector<Share> shares;
+  std::atomic<std::size_t> finished{0};
+
+  Progress(std::size_t pieces, std::size_t threads) : shares(threads) {
+    for (std::size_t i = 0; i < threads; ++i) {
+      shares[i].next = pieces * i / threads;
+      shares[i].end = pieces * (i + 1) / threads;
+    }
+  }
 };
 
 /// The phases on their way; every thread that helps calls work().
 class Run {
  public:
-  explicit Run(std::span<const Phase> phases) : phases_(phases), progress_(phases.size()) {}
+  Run(std::span<const Phase> phases, std::size_t threads) : phases_(phases) {
+    for (const Phase& phase : phases) progress_.emplace_back(phase.count, threads);
+  }
 
-  void work() {
+  void work(std::size_t thread) {
     for (std::size_t p = 0; p < phases_.size(); ++p) {
-      take_pieces(phases_[p], progress_[p]);
+      Progress& progress = progress_[p];
+      const std::size_t threads = progress.shares.size();
+      for (std::size_t i = 0; i < threads; ++i)
+        take_pieces(phases_[p], progress.shares[(thread + i) % threads], progress.finished);
       // What the others still have in hand is at most one piece each.
-      while (progress_[p].finished.load(std::memory_order_acquire) < phases_[p].count) {
+      while (progress.finished.load(std::memory_order_acquire) < phases_[p].count) {
         if (failed_.load(std::memory_order_acquire)) return;
         std::this_thread::yield();
       }
@@ -37,8 +58,8 @@ class Run {
   }
 
  private:
-  void take_pieces(const Phase& phase, Progress& progress) {
-    for (std::size_t i = progress.next++; i < phase.count; i = progress.next++) {
+  void take_pieces(const Phase& phase, Share& share, std::atomic<std::size_t>& finished) {
+    for (std::size_t i = share.next++; i < share.end; i = share.next++) {
       if (failed_.load(std::memory_order_relaxed)) return;
       try {
         phase.run(i);
@@ -48,12 +69,12 @@ class Run {
         failed_.store(true, std::memory_order_release);
         return;
       }
-      progress.finished.fetch_add(1, std::memory_order_acq_rel);
+      finished.fetch_add(1, std::memory_order_acq_rel);
     }
   }
 
   std::span<const Phase> phases_;
-  std::vector<Progress> progress_;
+  std::deque<Progress> progress_;
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
   std::mutex failure_lock_;
@@ -64,13 +85,14 @@ class Run {
 void run_phases(std::span<const Phase> phases, int threads) {
   std::size_t most = 0;
   for (const Phase& phase : phases) most = std::max(most, phase.count);
+  if (threads == 0) threads = machine_threads();
   if (threads == 1 || most <= 1) {
     for (const Phase& phase : phases)
       for (std::size_t i = 0; i < phase.count; ++i) phase.run(i);
     return;
   }
-  Run run(phases);
-  run_on_threads(threads, [&run] { run.work(); });
+  Run run(phases, static_cast<std::size_t>(threads));
+  run_on_threads(threads, [&run](int number) { run.work(static_cast<std::size_t>(number)); });
   run.rethrow();
 }
 

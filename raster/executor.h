@@ -17,16 +17,21 @@ struct Phase {
 /// Runs the phases one after the other, the pieces of each in any order, on up to `threads` threads
 /// (0: the machine's). With threads = 1 everything runs on the calling thread, in order, and no
 /// scheduler is touched. An exception of a piece reaches the caller; pieces not begun are left out.
-/// Threads are asked for once, not once a phase: a late one finds its work where it is.
+/// Threads are asked for once, not once a phase: a late one finds its work where it is. Each begins
+/// with a share of the pieces that is its own in every call, so that what it wrote the last time is
+/// still in its core's cache, and then helps with the others'.
 void run_phases(std::span<const Phase> phases, int threads);
 
 /// Calls body(first, last) for consecutive chunks of [0, count), in any order.
 void for_each_chunk(std::size_t count, std::size_t chunk, int threads,
                     const std::function<void(std::size_t first, std::size_t last)>& body);
 
-/// What an executor (oneTBB, C++ threads, serial) has to give: calls worker() on the calling thread
-/// and, at the same time or later or not at all, on up to threads - 1 others; returns when all
-/// calls have. Precondition: worker() does not throw and is right however many run.
-void run_on_threads(int threads, const std::function<void()>& worker);
+/// What an executor (oneTBB, C++ threads, serial) has to give.
+/// How many threads the machine runs at a time.
+int machine_threads();
+/// Calls worker(0) on the calling thread and, at the same time or later or not at all, worker(1) to
+/// worker(count - 1) on others; returns when all calls have. Precondition: worker does not throw
+/// and is right however many of its calls are made.
+void run_on_threads(int count, const std::function<void(int number)>& worker);
 
 }  // namespace gnomon::raster

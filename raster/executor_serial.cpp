@@ -3,6 +3,8 @@
 
 namespace gnomon::raster {
 
-void run_on_threads(int /*threads*/, const std::function<void()>& worker) { worker(); }
+int machine_threads() { return 1; }
+
+void run_on_threads(int /*count*/, const std::function<void(int number)>& worker) { worker(0); }
 
 }  // namespace gnomon::raster

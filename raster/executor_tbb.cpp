@@ -1,3 +1,4 @@
+#include <map>
 #include <optional>
 
 #include <tbb/global_control.h>
@@ -27,24 +28,31 @@ class OrderedPoint {
 #endif
 };
 
+/// The calling thread's arena of so many threads: one that is kept has its workers at hand.
+tbb::task_arena& arena_of(int threads) {
+  thread_local std::map<int, tbb::task_arena> arenas;
+  return arenas.try_emplace(threads, threads).first->second;
+}
+
 }  // namespace
 
-void run_on_threads(int threads, const std::function<void()>& worker) {
-  const int wanted = threads > 0 ? threads : tbb::info::default_concurrency();
+int machine_threads() { return tbb::info::default_concurrency(); }
+
+void run_on_threads(int count, const std::function<void(int number)>& worker) {
   // The scheduler keeps no more workers than the machine has unless it is told to.
   std::optional<tbb::global_control> more_workers;
-  if (wanted > tbb::info::default_concurrency())
+  if (count > machine_threads())
     more_workers.emplace(tbb::global_control::max_allowed_parallelism,
-                         static_cast<std::size_t>(wanted));
+                         static_cast<std::size_t>(count));
   OrderedPoint fork, join;
   fork.release();
-  tbb::task_arena arena(wanted);
+  tbb::task_arena& arena = arena_of(count);
   arena.execute([&] {
     tbb::parallel_for(
-        tbb::blocked_range<int>(0, wanted, 1),
-        [&](const tbb::blocked_range<int>&) {
+        tbb::blocked_range<int>(0, count, 1),
+        [&](const tbb::blocked_range<int>& range) {
           fork.acquire();
-          worker();
+          worker(range.begin());
           join.release();
         },
         tbb::simple_partitioner());

@@ -1,5 +1,6 @@
 // The executor on the C++ library's own threads, started for each call: for machines without
 // oneTBB, and for emulators and checkers of threads that cannot follow it.
+#include <algorithm>
 #include <thread>
 #include <vector>
 
@@ -7,12 +8,14 @@
 
 namespace gnomon::raster {
 
-void run_on_threads(int threads, const std::function<void()>& worker) {
-  const unsigned wanted =
-      threads > 0 ? static_cast<unsigned>(threads) : std::thread::hardware_concurrency();
+int machine_threads() {
+  return static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
+}
+
+void run_on_threads(int count, const std::function<void(int number)>& worker) {
   std::vector<std::jthread> helpers;
-  for (unsigned i = 1; i < wanted; ++i) helpers.emplace_back(worker);
-  worker();
+  for (int i = 1; i < count; ++i) helpers.emplace_back(worker, i);
+  worker(0);
 }
 
 }  // namespace gnomon::raster
