@@ -57,6 +57,20 @@ BlockMask cover_blocks(const TileEdges& edges, BlockMask& filled) noexcept {
   return ~outside;
 }
 
+HWY_INLINE PixelMask not_negative(VU32 sums, std::size_t i) {
+  const DI32 d;
+  return pixels_of(d, hn::Not(hn::Lt(hn::BitCast(d, sums), hn::Zero(d))), i);
+}
+
+/// The vectors of block b with the rows that the edges are for.
+HWY_INLINE VectorRange rows_of(DU32 d, const TileEdges& edges, std::uint32_t b) {
+  const int below = static_cast<int>(b / 8 * 8);
+  const int first = edges.first_row > below ? edges.first_row - below : 0;
+  const int end = edges.end_row < below + 8 ? edges.end_row - below : 8;
+  return {static_cast<std::size_t>(first) * kWidth & ~(hn::Lanes(d) - 1),
+          static_cast<std::size_t>(end) * kWidth};
+}
+
 template <int kCount>
 HWY_INLINE BlockMask cover_pixels_of(const TileEdges& edges, BlockMask blocks, PixelMask* covered) {
   const DU32 d;
@@ -72,8 +86,9 @@ HWY_INLINE BlockMask cover_pixels_of(const TileEdges& edges, BlockMask blocks, P
       value[k] = static_cast<std::uint32_t>(edges.value[k]) +
                  (b % 8) * 8 * static_cast<std::uint32_t>(edges.step_x[k]) +
                  (b / 8) * 8 * static_cast<std::uint32_t>(edges.step_y[k]);
-    PixelMask outside = 0;
-    for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    const VectorRange range = rows_of(d, edges, b);
+    PixelMask inside = 0;
+    for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
       // A pixel is out if any edge's sign bit is set there.
       VU32 any = hn::Zero(d);
       for (int k = 0; k < kCount; ++k)
@@ -81,10 +96,10 @@ HWY_INLINE BlockMask cover_pixels_of(const TileEdges& edges, BlockMask blocks, P
             any, hn::Add(hn::Set(d, value_at(value[k], static_cast<std::uint32_t>(edges.step_x[k]),
                                              static_cast<std::uint32_t>(edges.step_y[k]), i)),
                          lanes[k]));
-      outside |= negative(any, i);
+      inside |= not_negative(any, i);
     }
-    covered[b] = ~outside;
-    if (~outside) touched |= BlockMask{1} << b;
+    covered[b] = inside;
+    if (inside) touched |= BlockMask{1} << b;
   }
   return touched;
 }

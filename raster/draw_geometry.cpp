@@ -45,16 +45,16 @@ void DrawGeometry::run_vertices(const Kernels& kernels, std::size_t first, std::
   const Draw& draw = *setup_.draw;
   kernels.transform(draw.clip_from_model, draw.mesh.positions.data() + first, last - first,
                     vertices_.clip.data() + first);
-  project_vertices(setup_, vertices_, first, last);
+  project_vertices(kernels, setup_, vertices_, first, last);
 }
 
-void DrawGeometry::run_chunk(std::size_t chunk) {
+void DrawGeometry::run_chunk(const Kernels& kernels, std::size_t chunk) {
   const std::size_t triangles = setup_.draw->mesh.indices.size() / 3;
   const std::size_t first = chunk * triangles_per_chunk_;
   TriangleChunk& out = chunks_[chunk];
   out.set_up.clear();
-  set_up_triangles(setup_, vertices_, first, std::min(triangles_per_chunk_, triangles - first),
-                   out.set_up);
+  set_up_triangles(kernels, setup_, vertices_, first,
+                   std::min(triangles_per_chunk_, triangles - first), out.set_up);
   out.bins.fill(out.set_up.triangles);
 }
 

@@ -32,10 +32,10 @@ class DrawGeometry {
   /// First step: vertices [first, last) to the window.
   void run_vertices(const Kernels& kernels, std::size_t first, std::size_t last);
   /// Second step, after all vertices: set-up and bins of one chunk.
-  void run_chunk(std::size_t chunk);
+  void run_chunk(const Kernels& kernels, std::size_t chunk);
 
   TriangleSource source_of(const TriangleChunk& chunk) const {
-    return {vertices_.projected, chunk.set_up.pieces};
+    return {vertices_.inverse_w, chunk.set_up.pieces};
   }
   std::span<const TriangleChunk> chunks() const { return std::span(chunks_).first(chunk_count_); }
 

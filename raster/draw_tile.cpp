@@ -297,6 +297,8 @@ void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& sourc
   TileEdges edges;
   const Cover cover = cross_tile(triangle, x0_, y0_, edges);
   if (cover == Cover::none) return;
+  edges.first_row = box.y0;
+  edges.end_row = box.y1;
   const auto is_open = [&] { return !(tested.depth_passes | tested.depth_fails); };
   BlockDepths depths;
   bool has_plane = false;

@@ -155,16 +155,17 @@ bool must_wait(const std::vector<Job>& jobs, const Command& command, const Targe
 void run_group(Memory& memory, const Size& size, const Kernels& kernels, int threads) {
   if (memory.jobs.empty()) return;
   set_up_draws(memory);
-  const Phase phases[] = {
-      {memory.vertices.size(),
-       [&](std::size_t i) {
-         const Task& task = memory.vertices[i];
-         task.geometry->run_vertices(kernels, task.first, task.last);
-       }},
-      {memory.chunks.size(),
-       [&](std::size_t i) { memory.chunks[i].geometry->run_chunk(memory.chunks[i].first); }},
-      {static_cast<std::size_t>(size.tiles_x()) * size.tiles_y(),
-       [&](std::size_t tile) { run_tile(memory, kernels, tile, size); }}};
+  const Phase phases[] = {{memory.vertices.size(),
+                           [&](std::size_t i) {
+                             const Task& task = memory.vertices[i];
+                             task.geometry->run_vertices(kernels, task.first, task.last);
+                           }},
+                          {memory.chunks.size(),
+                           [&](std::size_t i) {
+                             memory.chunks[i].geometry->run_chunk(kernels, memory.chunks[i].first);
+                           }},
+                          {static_cast<std::size_t>(size.tiles_x()) * size.tiles_y(),
+                           [&](std::size_t tile) { run_tile(memory, kernels, tile, size); }}};
   run_phases(phases, threads);
   memory.jobs.clear();
 }

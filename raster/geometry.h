@@ -1,9 +1,10 @@
-// The front end: vertices to clip space, clipping, projection, the snap to 1/256 pixel, and
-// triangle set-up in integers. Floats end here. Order of operations (docs/semantics.md): clip =
-// ((m0 x + m1 y) + m2 z) + m3 w in float32, each rounded once; division by w and viewport in
-// double; coordinates and depth rounded to nearest, ties to even.
+// The front end: vertices to clip space and to the window (raster/project.h), the triangles that
+// reach the tiles (raster/select_triangles.h), clipping, and triangle set-up in integers. Order of
+// operations of the transform (docs/semantics.md): clip = ((m0 x + m1 y) + m2 z) + m3 w in float32,
+// each rounded once.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -12,14 +13,11 @@
 
 #include "raster/depth_plane.h"
 #include "raster/frame.h"
+#include "raster/kernels.h"
+#include "raster/pixel_box.h"
+#include "raster/project.h"
 
 namespace gnomon::raster {
-
-/// Pixels x0 <= x < x1, y0 <= y < y1.
-struct PixelBox {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  bool empty() const { return x0 >= x1 || y0 >= y1; }
-};
 
 PixelBox intersect(const PixelBox& a, const PixelBox& b);
 /// The scissor's pixels inside a target of this size.
@@ -55,7 +53,6 @@ struct Edge {
 /// A triangle ready for the tiles, its vertices counter-clockwise. Small, because threads hand them
 /// to each other.
 struct SetupTriangle {
-  static constexpr int kSmall = 31;
   static constexpr std::uint32_t kWhole = 0xffffffff;
 
   /// Polygon offset is part of their depths.
@@ -68,7 +65,7 @@ struct SetupTriangle {
   std::uint32_t piece = kWhole;
   std::int16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   bool front_facing = true;
-  /// Its vertices lie within kSmall x kSmall pixels.
+  /// Its vertices lie within kSmallPixels of each other in x and y.
   bool small = false;
   /// Vertices 1 and 2 are the mesh's 2 and 1.
   bool swapped = false;
@@ -108,37 +105,34 @@ struct DrawSetup {
   DepthFormat depth_format = DepthFormat::d24;
   PixelBox box;
   Rect viewport;
+  Projection projection;
   /// Depth is clamped to [low, high] depth units.
   std::uint32_t depth_low = 0, depth_high = 0;
 };
 
 DrawSetup make_draw_setup(const Draw& draw, const Targets& targets);
 
-/// A vertex inside the clip volume, projected and snapped; others are clipped first.
-struct ProjectedVertex {
-  SnappedVertex snapped;
-  double inverse_w = 1.0;
-};
-
-/// Where a vertex in clip space is.
-enum class VertexPlace : std::uint8_t { inside, outside, not_finite };
-
 /// The vertices of a draw after the front end's first step, one a position.
 struct DrawVertices {
   std::vector<glm::vec4> clip;
-  std::vector<ProjectedVertex> projected;
-  std::vector<VertexPlace> places;
+  /// Projected (raster/project.h), where x is not kClipped.
+  std::vector<std::int32_t> x_fx, y_fx;
+  std::vector<std::int64_t> z_fx;
+  std::vector<double> inverse_w;
 
   void resize(std::size_t count) {
     clip.resize(count);
-    projected.resize(count);
-    places.resize(count);
+    x_fx.resize(count);
+    y_fx.resize(count);
+    z_fx.resize(count);
+    inverse_w.resize(count);
   }
 };
 
 /// Where the attributes of a chunk's triangles come from.
 struct TriangleSource {
-  std::span<const ProjectedVertex> vertices;
+  /// 1/w of the draw's vertices.
+  std::span<const double> inverse_w_of_vertex;
   std::span<const Piece> pieces;
 
   /// 1/w of the triangle's vertices.
@@ -150,15 +144,25 @@ struct TriangleSource {
 struct DepthInterval {
   std::int32_t least, greatest;
 };
-DepthInterval vertex_depths(const SetupTriangle& triangle, const DrawSetup& setup);
+inline DepthInterval vertex_depths(const SetupTriangle& triangle, const DrawSetup& setup) {
+  const auto& v = triangle.vertices;
+  const auto [least, greatest] = std::minmax({v[0].z_fx, v[1].z_fx, v[2].z_fx});
+  const int bits = depth_fraction_bits(setup.depth_format);
+  const std::int64_t half = std::int64_t{1} << (bits - 1);
+  const auto units = [&](std::int64_t value) {
+    return static_cast<std::int32_t>(
+        std::clamp<std::int64_t>((value + half) >> bits, setup.depth_low, setup.depth_high));
+  };
+  return {units(least - kPlaneError), units(greatest + kPlaneError)};
+}
 
-/// Fills places and projected of vertices [first, last) from their clip-space positions.
-void project_vertices(const DrawSetup& setup, DrawVertices& vertices, std::size_t first,
-                      std::size_t last);
+/// Projects vertices [first, last) from their clip-space positions.
+void project_vertices(const Kernels& kernels, const DrawSetup& setup, DrawVertices& vertices,
+                      std::size_t first, std::size_t last);
 
 /// Appends the set-up triangles of mesh triangles [first, first + count), in order, without those
 /// that cover no pixel.
-void set_up_triangles(const DrawSetup& setup, const DrawVertices& vertices, std::size_t first,
-                      std::size_t count, SetupTriangles& out);
+void set_up_triangles(const Kernels& kernels, const DrawSetup& setup, const DrawVertices& vertices,
+                      std::size_t first, std::size_t count, SetupTriangles& out);
 
 }  // namespace gnomon::raster

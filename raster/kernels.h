@@ -1,8 +1,9 @@
-// The kernel boundary: what happens to the pixels of a 64x64 tile, in 8x8 blocks of 64. Everything
-// here is integer; a set of pixels is a 64-bit mask, bit 8 y + x for pixel (x, y) of the block, and
-// planes are block-linear (raster/tiled_plane.h). Kernels cannot fail. They are written twice: in
-// plain C++ (kernels_scalar.cpp) and once for all vector instruction sets (kernels_simd.cpp); both
-// leave the same bytes.
+// The kernel boundary: the front end's loops over vertices and triangles, and what happens to the
+// pixels of a 64x64 tile, in 8x8 blocks of 64. A tile's tests and counts are integer; a set of
+// pixels is a 64-bit mask, bit 8 y + x for pixel (x, y) of the block, and planes are block-linear
+// (raster/tiled_plane.h). Kernels cannot fail. They are written twice: in plain C++
+// (kernels_scalar.cpp) and once for all vector instruction sets (kernels_simd.cpp); both leave the
+// same bytes.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,8 @@
 #include <glm/vec4.hpp>
 
 #include "raster/isa.h"
+#include "raster/project.h"
+#include "raster/select_triangles.h"
 #include "raster/state.h"
 
 namespace gnomon::raster {
@@ -19,10 +22,16 @@ namespace gnomon::raster {
 using PixelMask = std::uint64_t;
 inline constexpr PixelMask kAllPixels = ~PixelMask{0};
 
-/// Calls body(i) for each pixel of the mask, lowest bit first.
+/// Calls body(i) for each bit i of the mask, lowest first.
+template <class Body>
+void for_each_bit(std::uint64_t mask, Body body) {
+  for (; mask; mask &= mask - 1) body(static_cast<std::size_t>(__builtin_ctzll(mask)));
+}
+
+/// The same for the pixels of a mask.
 template <class Body>
 void for_each_pixel(PixelMask mask, Body body) {
-  for (; mask; mask &= mask - 1) body(static_cast<std::size_t>(__builtin_ctzll(mask)));
+  for_each_bit(mask, body);
 }
 
 /// A set of the 8x8 blocks of a tile, bit 8 y + x for block (x, y).
@@ -32,7 +41,7 @@ inline constexpr BlockMask kAllBlocks = ~BlockMask{0};
 /// Calls body(b) for each block of the mask, lowest bit first.
 template <class Body>
 void for_each_block_of(BlockMask mask, Body body) {
-  for_each_pixel(mask, body);
+  for_each_bit(mask, body);
 }
 
 /// The edges of a triangle that cross a tile, as 32-bit sums: value + x * step_x + y * step_y at
@@ -42,6 +51,8 @@ struct TileEdges {
   int count = 0;
   std::int32_t value[3];
   std::int32_t step_x[3], step_y[3];
+  /// The rows of the tile outside which no pixel is inside.
+  int first_row = 0, end_row = 64;
 };
 
 /// A depth plane at a tile's first pixel, half a unit added (raster/depth_plane.h).
@@ -101,6 +112,8 @@ struct LitLight {
   float position[4];
   float ambient[3], diffuse[3], specular[3];
   float attenuation[3];
+  /// The attenuation is 1, 0, 0.
+  bool keeps_strength;
   float spot_direction[3];
   float spot_cos_cutoff;
   int spot_exponent;
@@ -177,23 +190,32 @@ struct Kernels {
   void (*blend_block)(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
                       const std::uint8_t* source, std::uint8_t* stored) noexcept;
 
-  /// Colours of the mask's pixels of block b, four planes of 64; other pixels' are not defined.
+  /// Colours of the mask's pixels (there are some) of block b, four planes of 64; other pixels' are
+  /// not defined.
   /// Null in plain C++: there shade() and interpolate() do it, pixel by pixel.
   void (*shade_block)(const TileShading& shading, std::size_t b, PixelMask mask,
                       float* colors) noexcept;
 
-  /// shade_block and store_colors for masks[b] of each block of a tile.
+  /// shade_block and store_colors for masks[b] of each of the blocks.
   void (*shade_and_store)(const TileShading& shading, BlockMask blocks, const PixelMask* masks,
                           std::uint8_t* stored) noexcept;
 
-  /// Rounds the mask's pixels of 64 colours in four planes to RGBA8 (raster/unorm.h) and stores
-  /// them; the others stay.
+  /// Rounds the mask's pixels (there are some) of 64 colours in four planes to RGBA8
+  /// (raster/unorm.h) and stores them; the others stay.
   void (*store_colors)(const float* colors, PixelMask mask, std::uint8_t* stored) noexcept;
 
   /// Clip-space positions of `count` vertices: ((m0 x + m1 y) + m2 z) + m3 w in float32, each
   /// operation rounded once.
   void (*transform)(const glm::mat4& clip_from_model, const glm::vec4* positions, std::size_t count,
                     glm::vec4* out) noexcept;
+
+  /// Projects and snaps `count` vertices; those that the clip volume does not hold get kClipped.
+  void (*project)(const Projection& projection, const glm::vec4* clip, std::size_t count,
+                  const ProjectedPlanes& out) noexcept;
+
+  /// Looks at `count` triangles, up to a batch of them.
+  void (*select_triangles)(const TriangleSelector& selector, const std::uint32_t* indices,
+                           std::size_t count, TriangleBatch& out) noexcept;
 };
 
 /// Misuse: an instruction set that available_isas() does not list.

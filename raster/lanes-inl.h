@@ -42,6 +42,19 @@ HWY_INLINE PixelMask pixels_of(D d, hn::Mask<D> mask, std::size_t first) {
   return bits << first;
 }
 
+/// The vectors of a block that some pixels lie in: first lanes first <= i < end, a vector apart.
+struct VectorRange {
+  std::size_t first, end;
+};
+
+/// Precondition: there are some.
+template <class D>
+HWY_INLINE VectorRange vectors_of(D d, PixelMask pixels) {
+  const auto first = static_cast<std::size_t>(__builtin_ctzll(pixels));
+  const auto end = kPixels - static_cast<std::size_t>(__builtin_clzll(pixels));
+  return {first & ~(hn::Lanes(d) - 1), end};
+}
+
 /// x * step_x + y * step_y for the pixels of a vector whose first lane is pixel (0, 0); sums are
 /// modulo 2^32.
 HWY_INLINE VU32 lane_steps(DU32 d, std::uint32_t step_x, std::uint32_t step_y) {

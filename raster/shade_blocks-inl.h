@@ -8,6 +8,8 @@
 #define GNOMON_RASTER_SHADE_BLOCKS_INL_H
 #endif
 
+#include <limits>
+
 #include <hwy/highway.h>
 
 #include "raster/kernels.h"
@@ -75,7 +77,8 @@ HWY_INLINE void block_weights(const TileWeights& w, std::size_t b, PixelMask mas
   const hn::Rebind<float, decltype(d)> single_d;
   const auto x0 = static_cast<double>(b % 8 * 8), y0 = static_cast<double>(b / 8 * 8);
   const auto one = hn::Set(d, 1.0);
-  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+  const VectorRange range = vectors_of(d, mask);
+  for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
     if (!any_pixel(mask, i, hn::Lanes(d))) continue;
     const auto x = hn::Iota(d, x0 + static_cast<double>(i % kWidth));
     const double y = y0 + static_cast<double>(i / kWidth);
@@ -120,7 +123,11 @@ HWY_INLINE void add_light(const LitLight& light, const LitTerms& lit, const Vect
   const bool is_point = light.position[3] != 0.0f;
   if (is_point) to_light = sub(to_light, world);
   const VF32 distance = hn::Sqrt(dot3(to_light, to_light));
-  if (is_point) {
+  if (is_point && light.keeps_strength) {
+    // The quotient below is 1 unless the square overflows or is NaN; it is 0 then.
+    const VF32 infinity = set(std::numeric_limits<float>::infinity());
+    strength = hn::IfThenElseZero(hn::Lt(hn::Mul(distance, distance), infinity), strength);
+  } else if (is_point) {
     const VF32 attenuation =
         hn::Add(hn::Add(set(light.attenuation[0]), hn::Mul(set(light.attenuation[1]), distance)),
                 hn::Mul(set(light.attenuation[2]), hn::Mul(distance, distance)));
@@ -197,7 +204,8 @@ void shade_block(const TileShading& s, std::size_t b, PixelMask mask, float* col
   const DF32 d;
   alignas(64) float planes[3][kPixels];
   block_weights(s.weights, b, mask, planes);
-  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+  const VectorRange range = vectors_of(d, mask);
+  for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
     if (!any_pixel(mask, i, hn::Lanes(d))) continue;
     const VF32 p0 = hn::Load(d, planes[0] + i), p1 = hn::Load(d, planes[1] + i),
                p2 = hn::Load(d, planes[2] + i);
@@ -229,9 +237,9 @@ void store_colors(const float* colors, PixelMask mask, std::uint8_t* stored) noe
     const VF32 scaled = hn::Mul(hn::Min(positive, set(1.0f)), set(255.0f));
     return hn::BitCast(whole_d, hn::NearestInt(scaled));
   };
-  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+  const VectorRange range = vectors_of(d, mask);
+  for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
     const auto here = lanes_of(whole_d, mask, i);
-    if (hn::AllFalse(whole_d, here)) continue;
     const auto rgba =
         hn::Or(hn::Or(channel(0, i), hn::ShiftLeft<8>(channel(1, i))),
                hn::Or(hn::ShiftLeft<16>(channel(2, i)), hn::ShiftLeft<24>(channel(3, i))));

@@ -128,14 +128,16 @@ class Depths {
   std::uint32_t wide_[kPixels];
 };
 
-/// The pixels whose depth stands in the relation to the stored one. Depths have at most 24 bits, so
-/// signed comparison is right.
+/// The pixels whose depth stands in the relation to the stored one, where they lie in a vector with
+/// one of `candidates`. Depths have at most 24 bits, so signed comparison is right.
 template <Relation kRelation>
-HWY_INLINE PixelMask related_depths(const Depths& depths, const std::uint32_t* depth) {
+HWY_INLINE PixelMask related_depths(const Depths& depths, const std::uint32_t* depth,
+                                    PixelMask candidates) {
   const DI32 d;
   const auto* const stored = reinterpret_cast<const std::int32_t*>(depth);
+  const VectorRange range = vectors_of(d, candidates);
   PixelMask mask = 0;
-  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d))
+  for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d))
     mask |= pixels_of(d, related<kRelation>(depths.at(i), hn::LoadU(d, stored + i)), i);
   return mask;
 }
@@ -143,32 +145,34 @@ HWY_INLINE PixelMask related_depths(const Depths& depths, const std::uint32_t* d
 HWY_INLINE void write_depths(const Depths& depths, PixelMask pixels, std::uint32_t* depth) {
   const DI32 d;
   auto* const stored = reinterpret_cast<std::int32_t*>(depth);
-  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d))
+  const VectorRange range = vectors_of(d, pixels);
+  for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d))
     hn::BlendedStore(depths.at(i), lanes_of(d, pixels, i), d, stored + i);
 }
 
+/// Of the pixels `candidates`, which are some, those that pass.
 HWY_INLINE PixelMask compare_depths(CompareFunc func, const Depths& depths,
-                                    const std::uint32_t* depth) {
+                                    const std::uint32_t* depth, PixelMask candidates) {
   if (func == CompareFunc::never) return 0;
-  if (func == CompareFunc::always) return kAllPixels;
+  if (func == CompareFunc::always) return candidates;
   const Comparison c = comparison(func);
   PixelMask mask = 0;
   switch (c.relation) {
     case Relation::less:
-      mask = related_depths<Relation::less>(depths, depth);
+      mask = related_depths<Relation::less>(depths, depth, candidates);
       break;
     case Relation::equal:
-      mask = related_depths<Relation::equal>(depths, depth);
+      mask = related_depths<Relation::equal>(depths, depth, candidates);
       break;
     case Relation::greater:
-      mask = related_depths<Relation::greater>(depths, depth);
+      mask = related_depths<Relation::greater>(depths, depth, candidates);
       break;
   }
-  return c.opposite ? ~mask : mask;
+  return candidates & (c.opposite ? ~mask : mask);
 }
 
-/// Of the pixels `candidates` of block b those that pass the depth test; they are written if asked
-/// for.
+/// Of the pixels `candidates` of block b, which are some, those that pass the depth test; they are
+/// written if asked for.
 HWY_INLINE PixelMask test_depth(const FragmentTests& tests, const TestedBlocks& tested,
                                 std::size_t b, PixelMask candidates) {
   const bool passes = (tested.depth_passes >> b & 1) != 0;
@@ -177,7 +181,7 @@ HWY_INLINE PixelMask test_depth(const FragmentTests& tests, const TestedBlocks& 
   std::uint32_t* const depth = tested.depth + b * kPixels;
   const Depths depths(tested.plane, b);
   const PixelMask passed =
-      passes ? candidates : candidates & compare_depths(tests.depth_func, depths, depth);
+      passes ? candidates : compare_depths(tests.depth_func, depths, depth, candidates);
   if (tests.depth_write && passed) write_depths(depths, passed, depth);
   return passed;
 }

@@ -42,6 +42,7 @@ LitLight make_light(const Light& light) {
   copy(light.diffuse, out.diffuse);
   copy(light.specular, out.specular);
   copy(light.attenuation, out.attenuation);
+  out.keeps_strength = light.attenuation == glm::vec3(1.0f, 0.0f, 0.0f);
   copy(light.spot_direction, out.spot_direction);
   out.spot_cos_cutoff = light.spot_cos_cutoff;
   out.spot_exponent = light.spot_exponent;

@@ -108,9 +108,10 @@ void collect_layers(const DrawSetup& setup, const std::vector<glm::vec4>& clip,
   DrawVertices vertices;
   vertices.resize(clip.size());
   vertices.clip = clip;
-  project_vertices(setup, vertices, 0, clip.size());
+  project_vertices(scalar_kernels(), setup, vertices, 0, clip.size());
   SetupTriangles set_up;
-  set_up_triangles(setup, vertices, 0, setup.draw->mesh.indices.size() / 3, set_up);
+  set_up_triangles(scalar_kernels(), setup, vertices, 0, setup.draw->mesh.indices.size() / 3,
+                   set_up);
   const auto signed_units = [](std::uint64_t value) {
     return static_cast<double>(static_cast<std::int64_t>(value)) / 256.0;
   };

@@ -169,11 +169,11 @@ class Geometry {
     std::vector<glm::vec4>& clip = vertices.clip;
     scalar_kernels().transform(draw.clip_from_model, draw.mesh.positions.data(), clip.size(),
                                clip.data());
-    project_vertices(setup_, vertices, 0, clip.size());
+    project_vertices(scalar_kernels(), setup_, vertices, 0, clip.size());
     for (std::size_t t = 0; t < draw.mesh.indices.size() / 3; ++t) {
       const auto index = draw.mesh.indices.subspan(3 * t, 3);
       SetupTriangles pieces;
-      set_up_triangles(setup_, vertices, t, 1, pieces);
+      set_up_triangles(scalar_kernels(), setup_, vertices, t, 1, pieces);
       Both both{std::move(pieces.triangles),
                 clipped_outline(setup_, {clip[index[0]], clip[index[1]], clip[index[2]]}, height_),
                 {}};

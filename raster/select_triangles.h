@@ -1,0 +1,45 @@
+// Which of a mesh's triangles reach the tiles: those that face the right way and whose box, inside
+// the draw's, has a pixel; where it has four or fewer, one whose centre is covered.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "raster/pixel_box.h"
+
+namespace gnomon::raster {
+
+/// Triangles are looked at in batches of so many, a bit of a mask each.
+inline constexpr std::size_t kTriangleBatch = 64;
+using TriangleMask = std::uint64_t;
+
+/// The vertices of a small triangle lie within so many pixels, or 1/256 pixels.
+inline constexpr int kSmallPixels = 31, kSmallExtent = kSmallPixels * 256;
+/// A small triangle is looked at pixel by pixel where its box has at most so many a side.
+inline constexpr int kTinyBox = 2;
+
+/// What all triangles of a draw share.
+struct TriangleSelector {
+  /// Snapped vertices (raster/project.h).
+  const std::int32_t *x_fx = nullptr, *y_fx = nullptr;
+  /// Triangles that go counter-clockwise (clockwise) in the window are kept.
+  bool keeps_ccw = true, keeps_cw = true;
+  PixelBox box;
+};
+
+struct TriangleBatch {
+  /// Those with a vertex that was not projected, of which nothing else is known; the others that
+  /// are kept.
+  TriangleMask clipped, kept;
+  /// Of those kept: clockwise in the window; small.
+  TriangleMask clockwise, small;
+  /// Of those kept: twice the signed area, and the pixels of the box.
+  double area[kTriangleBatch];
+  std::int32_t x0[kTriangleBatch], y0[kTriangleBatch], x1[kTriangleBatch], y1[kTriangleBatch];
+};
+
+/// Kernels::select_triangles in plain C++.
+void select_triangles(const TriangleSelector& selector, const std::uint32_t* indices,
+                      std::size_t count, TriangleBatch& out) noexcept;
+
+}  // namespace gnomon::raster
