@@ -202,8 +202,11 @@ DrawInTile::DrawInTile(const DrawSetup& setup, const FragmentSetup& fragments, T
 void DrawInTile::set_plane(const SetupTriangle& triangle, TestedBlocks& tested) const {
   TileDepth& plane = tested.plane;
   plane.fraction_bits = depth_fraction_bits(setup_.depth_format);
-  plane.base = depth_base_at(triangle.vertices, triangle.area(), x0_, y0_) +
-               (std::uint64_t{1} << (plane.fraction_bits - 1));
+  const bool first_tile = triangle.x0 >= x0_ && triangle.y0 >= y0_;
+  const std::uint64_t base = triangle.has_base && first_tile
+                                 ? triangle.base
+                                 : depth_base_at(triangle.vertices, triangle.area(), x0_, y0_);
+  plane.base = base + (std::uint64_t{1} << (plane.fraction_bits - 1));
   plane.step_x = triangle.step_x;
   plane.step_y = triangle.step_y;
   plane.narrow = triangle.narrow;

@@ -19,7 +19,7 @@ namespace gnomon::raster {
 namespace {
 
 constexpr std::size_t kVerticesPerPiece = 2048;
-/// A group ends when its draws have so many triangles (a set-up triangle takes 88 bytes), or
+/// A group ends when its draws have so many triangles (a set-up triangle takes 96 bytes), or
 /// so many commands.
 constexpr std::size_t kTrianglesPerGroup = std::size_t{1} << 21, kCommandsPerGroup = 512;
 

@@ -20,14 +20,16 @@ struct Corner {
 };
 
 TriangleSelector selector_of(const DrawSetup& setup, const std::int32_t* x_fx,
-                             const std::int32_t* y_fx) {
+                             const std::int32_t* y_fx, const std::int64_t* z_fx) {
   const State& state = setup.draw->state;
   const auto keeps = [&](bool front_facing) {
     return state.cull != Cull::front_and_back &&
            state.cull != (front_facing ? Cull::front : Cull::back);
   };
   const bool ccw_is_front = state.front_face == FrontFace::ccw;
-  return {x_fx, y_fx, keeps(ccw_is_front), keeps(!ccw_is_front), setup.box};
+  const bool plain_depths = !state.depth_clamp && !state.polygon_offset;
+  return {x_fx,     y_fx, plain_depths ? z_fx : nullptr, keeps(ccw_is_front), keeps(!ccw_is_front),
+          setup.box};
 }
 
 /// Sets up triangle t of the batch, one that is kept, from its vertices.
@@ -43,6 +45,15 @@ void set_up(const DrawSetup& setup, const TriangleBatch& batch, std::size_t t,
   out.x1 = static_cast<std::int16_t>(batch.x1[t]);
   out.y1 = static_cast<std::int16_t>(batch.y1[t]);
   out.vertices = {v0, out.swapped ? v2 : v1, out.swapped ? v1 : v2};
+  out.has_base = (batch.planes >> t & 1) != 0;
+  if (out.has_base) {
+    out.step_x = static_cast<std::uint64_t>(batch.step_x[t]);
+    out.step_y = static_cast<std::uint64_t>(batch.step_y[t]);
+    out.base = static_cast<std::uint64_t>(batch.base[t]);
+    // No depth lies outside the depth range (selector_of).
+    out.narrow = true;
+    return;
+  }
   const auto area = static_cast<std::int64_t>(std::abs(batch.area[t]));
   const DepthPlane plane = make_depth_plane(out.vertices, area, state.polygon_offset,
                                             setup.depth_format, setup.depth_low, setup.depth_high);
@@ -92,7 +103,7 @@ void set_up_pieces(const DrawSetup& setup, const std::array<glm::vec4, 3>& clip,
     }
     constexpr std::uint32_t kOne[3] = {0, 1, 2};
     TriangleBatch batch;
-    select_triangles(selector_of(setup, x_fx.data(), y_fx.data()), kOne, 1, batch);
+    select_triangles(selector_of(setup, x_fx.data(), y_fx.data(), nullptr), kOne, 1, batch);
     if (!batch.kept) continue;
     set_up(setup, batch, 0, snapped(piece[0]->vertex), snapped(piece[1]->vertex),
            snapped(piece[2]->vertex), triangle);
@@ -198,7 +209,8 @@ void project_vertices(const Kernels& kernels, const DrawSetup& setup, DrawVertic
 
 void set_up_triangles(const Kernels& kernels, const DrawSetup& setup, const DrawVertices& vertices,
                       std::size_t first, std::size_t count, SetupTriangles& out) {
-  const TriangleSelector selector = selector_of(setup, vertices.x_fx.data(), vertices.y_fx.data());
+  const TriangleSelector selector =
+      selector_of(setup, vertices.x_fx.data(), vertices.y_fx.data(), vertices.z_fx.data());
   const auto vertex = [&](std::uint32_t i) {
     return SnappedVertex{vertices.x_fx[i], vertices.y_fx[i], vertices.z_fx[i]};
   };

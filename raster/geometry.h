@@ -59,6 +59,8 @@ struct SetupTriangle {
   std::array<SnappedVertex, 3> vertices;
   /// Slopes of depth a pixel (raster/depth_plane.h).
   std::uint64_t step_x = 0, step_y = 0;
+  /// The plane's base at the tile of pixel (x0, y0), if has_base.
+  std::uint64_t base = 0;
   /// The mesh's triangle is at this place among its indices.
   std::uint32_t first_index = 0;
   /// Its place among the pieces; kWhole if it is the mesh's triangle.
@@ -71,6 +73,7 @@ struct SetupTriangle {
   bool swapped = false;
   /// DepthPlane::narrow.
   bool narrow = true;
+  bool has_base = false;
 
   /// The pixels it may cover.
   PixelBox box() const { return {x0, y0, x1, y1}; }

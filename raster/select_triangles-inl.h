@@ -1,5 +1,6 @@
 // Vector kernel: the choice of raster/select_triangles.cpp, a triangle a lane. Areas in double:
-// products of 26 bits and their difference are exact.
+// products of 26 bits and their difference are exact. Depth planes in double where all is below
+// 2^53, so that quotients and their remainders are exact too.
 // Read once for each instruction set, so its guard goes to and fro with Highway's.
 #if defined(GNOMON_RASTER_SELECT_TRIANGLES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GNOMON_RASTER_SELECT_TRIANGLES_INL_H
@@ -25,29 +26,116 @@ struct CornerLanes {
   VI32 x[3], y[3];
 };
 
+/// Half of a vector of 32-bit lanes as double or 64-bit integers.
+using DI32Half = hn::Half<DI32>;
+using DArea = hn::Rebind<double, DI32Half>;
+using DDepth = hn::Rebind<std::int64_t, DI32Half>;
+using VArea = hn::Vec<DArea>;
+
+/// Half 0 is the lower one, half 1 the upper.
+template <int kHalf>
+HWY_INLINE hn::Vec<DI32Half> half_of(VI32 v) {
+  if constexpr (kHalf == 0) return hn::LowerHalf(DI32Half(), v);
+  return hn::UpperHalf(DI32Half(), v);
+}
+template <int kHalf>
+HWY_INLINE VArea to_double(VI32 v) {
+  return hn::PromoteTo(DArea(), half_of<kHalf>(v));
+}
+
+template <int kHalf>
+HWY_INLINE VArea signed_area(VI32 dx1, VI32 dy1, VI32 dx2, VI32 dy2) {
+  return hn::Sub(hn::Mul(to_double<kHalf>(dx1), to_double<kHalf>(dy2)),
+                 hn::Mul(to_double<kHalf>(dx2), to_double<kHalf>(dy1)));
+}
+
 /// Twice the signed areas, two vectors of double after one another in `out`; returns their signs:
 /// -1, 0 or 1.
 HWY_INLINE VI32 signed_areas(const CornerLanes& c, double* out) {
   const DI32 d;
-  const hn::Half<DI32> half_d;
-  const hn::RepartitionToWide<hn::RebindToFloat<DI32>> wide_d;
-  const hn::Rebind<float, decltype(half_d)> single_d;
+  const DArea wide_d;
+  const hn::Rebind<float, DI32Half> single_d;
   const VI32 dx1 = hn::Sub(c.x[1], c.x[0]), dy1 = hn::Sub(c.y[1], c.y[0]);
   const VI32 dx2 = hn::Sub(c.x[2], c.x[0]), dy2 = hn::Sub(c.y[2], c.y[0]);
-  const auto low = [&](VI32 v) HWY_ATTR { return hn::PromoteTo(wide_d, hn::LowerHalf(half_d, v)); };
-  const auto high = [&](VI32 v)
-                        HWY_ATTR { return hn::PromoteTo(wide_d, hn::UpperHalf(half_d, v)); };
-  const auto low_area = hn::Sub(hn::Mul(low(dx1), low(dy2)), hn::Mul(low(dx2), low(dy1)));
-  const auto high_area = hn::Sub(hn::Mul(high(dx1), high(dy2)), hn::Mul(high(dx2), high(dy1)));
-  hn::StoreU(low_area, wide_d, out);
-  hn::StoreU(high_area, wide_d, out + hn::Lanes(wide_d));
+  const VArea low = signed_area<0>(dx1, dy1, dx2, dy2), high = signed_area<1>(dx1, dy1, dx2, dy2);
+  hn::StoreU(low, wide_d, out);
+  hn::StoreU(high, wide_d, out + hn::Lanes(wide_d));
   // Whole numbers, so rounding to float32 keeps sign and zero.
   const hn::RebindToFloat<DI32> float_d;
-  const auto area =
-      hn::Combine(float_d, hn::DemoteTo(single_d, high_area), hn::DemoteTo(single_d, low_area));
+  const auto area = hn::Combine(float_d, hn::DemoteTo(single_d, high), hn::DemoteTo(single_d, low));
   const auto zero = hn::Zero(float_d);
   return hn::Sub(hn::VecFromMask(d, hn::RebindMask(d, hn::Lt(area, zero))),
                  hn::VecFromMask(d, hn::RebindMask(d, hn::Gt(area, zero))));
+}
+
+/// A whole number between 0 and 2^51 as double, and one between -2^51 and 2^51 back: beside 2^52
+/// the last bit of a double is worth 1.
+HWY_INLINE VArea depth_to_double(hn::Vec<DDepth> depth) {
+  const VArea magic = hn::Set(DArea(), 0x1p52);
+  return hn::Sub(hn::BitCast(DArea(), hn::Or(depth, hn::BitCast(DDepth(), magic))), magic);
+}
+HWY_INLINE hn::Vec<DDepth> to_integer(VArea whole) {
+  const VArea magic = hn::Set(DArea(), 0x1.8p52);
+  return hn::Sub(hn::BitCast(DDepth(), hn::Add(whole, magic)), hn::BitCast(DDepth(), magic));
+}
+
+/// numerator / denominator to the nearest whole number, a half upwards (raster/wide.h); both are
+/// whole and below 2^51, the denominator positive.
+HWY_INLINE VArea nearest_quotient(VArea numerator, VArea denominator) {
+  const VArea one = hn::Set(DArea(), 1.0);
+  const VArea quotient = hn::Round(hn::Div(numerator, denominator));
+  const VArea remainder = hn::Sub(numerator, hn::Mul(quotient, denominator));
+  const VArea twice = hn::Add(remainder, remainder);
+  const VArea up = hn::IfThenElseZero(hn::Ge(twice, denominator), one);
+  const VArea down = hn::IfThenElseZero(hn::Lt(twice, hn::Neg(denominator)), one);
+  return hn::Sub(hn::Add(quotient, up), down);
+}
+
+/// Depth planes of the lanes of one half, which start at number i of the batch. Returns the lanes
+/// where they are right, if the triangles are small.
+template <int kHalf>
+HWY_INLINE TriangleMask find_planes(const TriangleSelector& s, const CornerLanes& c,
+                                    const VI32 (&index)[3], VI32 x0, VI32 y0, std::size_t i,
+                                    TriangleBatch& out) {
+  const DArea d;
+  const DDepth depth_d;
+  const DI32 narrow_d;
+  const auto depth = [&](VI32 of) HWY_ATTR {
+    return hn::GatherIndex(depth_d, s.z_fx, hn::PromoteTo(depth_d, half_of<kHalf>(of)));
+  };
+  const auto anchor = depth(index[0]);
+  const VArea z0 = depth_to_double(anchor);
+  const VArea dz1 = hn::Sub(depth_to_double(depth(index[1])), z0);
+  const VArea dz2 = hn::Sub(depth_to_double(depth(index[2])), z0);
+  const auto side = [&](const VI32(&v)[3], int k)
+                        HWY_ATTR { return to_double<kHalf>(hn::Sub(v[k], v[0])); };
+  const VArea dx1 = side(c.x, 1), dx2 = side(c.x, 2), dy1 = side(c.y, 1), dy2 = side(c.y, 2);
+  const VArea signed_area = hn::LoadU(d, out.area + i), area = hn::Abs(signed_area);
+  // Slopes times the positive area: clockwise corners change the sign of both.
+  const auto clockwise = hn::Lt(signed_area, hn::Zero(d));
+  const auto oriented = [&](VArea v) HWY_ATTR { return hn::IfThenElse(clockwise, hn::Neg(v), v); };
+  const VArea slope_x = oriented(hn::Sub(hn::Mul(dz1, dy2), hn::Mul(dz2, dy1)));
+  const VArea slope_y = oriented(hn::Sub(hn::Mul(dx1, dz2), hn::Mul(dx2, dz1)));
+  // From the first vertex to the first pixel of the box's tile.
+  constexpr int kTileMask = ~63;
+  const auto to_tile = [&](VI32 pixel, VI32 vertex) HWY_ATTR {
+    const VI32 first = hn::And(pixel, hn::Set(narrow_d, kTileMask));
+    return to_double<kHalf>(
+        hn::Sub(hn::Add(hn::ShiftLeft<8>(first), hn::Set(narrow_d, 128)), vertex));
+  };
+  const VArea along_x = hn::Mul(slope_x, to_tile(x0, c.x[0]));
+  const VArea along_y = hn::Mul(slope_y, to_tile(y0, c.y[0]));
+  const VArea subpixels = hn::Set(d, 256.0);
+  const VArea rise_x = hn::Mul(slope_x, subpixels), rise_y = hn::Mul(slope_y, subpixels);
+  const VArea limit = hn::Set(d, 0x1p49);
+  const auto exact =
+      hn::And(hn::And(hn::Lt(hn::Abs(rise_x), limit), hn::Lt(hn::Abs(rise_y), limit)),
+              hn::And(hn::Lt(hn::Abs(along_x), limit), hn::Lt(hn::Abs(along_y), limit)));
+  hn::StoreU(to_integer(nearest_quotient(rise_x, area)), depth_d, out.step_x + i);
+  hn::StoreU(to_integer(nearest_quotient(rise_y, area)), depth_d, out.step_y + i);
+  hn::StoreU(hn::Add(anchor, to_integer(nearest_quotient(hn::Add(along_x, along_y), area))),
+             depth_d, out.base + i);
+  return pixels_of(d, exact, i);
 }
 
 /// The lanes whose triangle, of this sign, covers the centre of one of the 2x2 pixels from (x0, y0)
@@ -90,10 +178,11 @@ HWY_INLINE void select_lanes(const TriangleSelector& s, const std::uint32_t* ind
   hn::Vec<DU32> corner[3];
   hn::LoadInterleaved3(DU32(), indices, corner[0], corner[1], corner[2]);
   CornerLanes c;
+  VI32 index[3];
   for (int k = 0; k < 3; ++k) {
-    const VI32 index = hn::BitCast(d, corner[k]);
-    c.x[k] = hn::GatherIndex(d, s.x_fx, index);
-    c.y[k] = hn::GatherIndex(d, s.y_fx, index);
+    index[k] = hn::BitCast(d, corner[k]);
+    c.x[k] = hn::GatherIndex(d, s.x_fx, index[k]);
+    c.y[k] = hn::GatherIndex(d, s.y_fx, index[k]);
   }
   const VI32 x_min = least(c.x[0], c.x[1], c.x[2]), x_max = greatest(c.x[0], c.x[1], c.x[2]);
   const VI32 y_min = least(c.y[0], c.y[1], c.y[2]), y_max = greatest(c.y[0], c.y[1], c.y[2]);
@@ -129,13 +218,19 @@ HWY_INLINE void select_lanes(const TriangleSelector& s, const std::uint32_t* ind
   hn::StoreU(y0, d, out.y0 + i);
   hn::StoreU(x1, d, out.x1 + i);
   hn::StoreU(y1, d, out.y1 + i);
+  if (!s.z_fx) return;
+  const TriangleMask wanted = pixels_of(d, hn::And(kept, small), i);
+  if (!wanted) return;
+  const std::size_t upper = i + hn::Lanes(DArea());
+  out.planes |= wanted & (find_planes<0>(s, c, index, x0, y0, i, out) |
+                          find_planes<1>(s, c, index, x0, y0, upper, out));
 }
 
 void select_triangles(const TriangleSelector& selector, const std::uint32_t* indices,
                       std::size_t count, TriangleBatch& out) noexcept {
   static_assert(kTriangleBatch == kPixels);
   const std::size_t lanes = hn::Lanes(DI32());
-  out.clipped = out.kept = out.clockwise = out.small = 0;
+  out.clipped = out.kept = out.clockwise = out.small = out.planes = 0;
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) select_lanes(selector, indices + 3 * i, i, out);
   if (i == count) return;

@@ -42,7 +42,7 @@ bool holds_a_center(const Corners& corners, bool clockwise, const PixelBox& box)
 
 void select_triangles(const TriangleSelector& selector, const std::uint32_t* indices,
                       std::size_t count, TriangleBatch& out) noexcept {
-  out.clipped = out.kept = out.clockwise = out.small = 0;
+  out.clipped = out.kept = out.clockwise = out.small = out.planes = 0;
   for (std::size_t t = 0; t < count; ++t) {
     const TriangleMask bit = TriangleMask{1} << t;
     Corners corners;

@@ -1,5 +1,6 @@
 // Which of a mesh's triangles reach the tiles: those that face the right way and whose box, inside
-// the draw's, has a pixel; where it has four or fewer, one whose centre is covered.
+// the draw's, has a pixel; where it has four or fewer, one whose centre is covered. And the depth
+// planes of those that are small and not steep.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +23,8 @@ inline constexpr int kTinyBox = 2;
 struct TriangleSelector {
   /// Snapped vertices (raster/project.h).
   const std::int32_t *x_fx = nullptr, *y_fx = nullptr;
+  /// Null: no planes are wanted. Otherwise between 0 and 2^51.
+  const std::int64_t* z_fx = nullptr;
   /// Triangles that go counter-clockwise (clockwise) in the window are kept.
   bool keeps_ccw = true, keeps_cw = true;
   PixelBox box;
@@ -33,9 +36,15 @@ struct TriangleBatch {
   TriangleMask clipped, kept;
   /// Of those kept: clockwise in the window; small.
   TriangleMask clockwise, small;
+  /// Those whose plane is known; of the other ones it has to be found by make_depth_plane. Plain
+  /// C++ finds none.
+  TriangleMask planes;
   /// Of those kept: twice the signed area, and the pixels of the box.
   double area[kTriangleBatch];
   std::int32_t x0[kTriangleBatch], y0[kTriangleBatch], x1[kTriangleBatch], y1[kTriangleBatch];
+  /// Of those with a plane (raster/depth_plane.h): the slopes, and the base at the tile of pixel
+  /// (x0, y0).
+  std::int64_t step_x[kTriangleBatch], step_y[kTriangleBatch], base[kTriangleBatch];
 };
 
 /// Kernels::select_triangles in plain C++.

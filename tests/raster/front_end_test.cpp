@@ -1,6 +1,7 @@
 // The front end's vector kernels against the plain ones, bit for bit: clip codes, projection and
 // the choice of triangles, on vertices and triangles that meet every branch. The plain ones are
 // held to the reference renderer with the rest of the rasterizer (tests/conformance).
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "isa_test.h"
+#include "raster/depth_plane.h"
 #include "raster/geometry.h"
 #include "raster/isa.h"
 #include "raster/kernels.h"
@@ -114,7 +116,13 @@ TEST_P(FrontEnd, ProjectsAsPlainCode) {
 /// vertices that were clipped.
 struct Soup {
   std::vector<std::int32_t> x_fx, y_fx;
+  std::vector<std::int64_t> z_fx;
   std::vector<std::uint32_t> indices;
+
+  TriangleSelector selector(bool ccw, bool cw, const PixelBox& box) const {
+    return {x_fx.data(), y_fx.data(), z_fx.data(), ccw, cw, box};
+  }
+  SnappedVertex vertex(std::uint32_t i) const { return {x_fx[i], y_fx[i], z_fx[i]}; }
 };
 
 Soup triangle_soup(std::size_t triangles, std::mt19937& random) {
@@ -122,11 +130,15 @@ Soup triangle_soup(std::size_t triangles, std::mt19937& random) {
   std::uniform_int_distribution<std::int32_t> place(-20 * 256, 120 * 256),
       far(-kMaxCoordinate, kMaxCoordinate);
   std::uniform_int_distribution<int> one_of(0, 19), size(0, 4);
+  // Depths are near each other or anywhere, up to D24's 1 in plane units.
+  std::uniform_int_distribution<std::int64_t> depth(0, std::int64_t{0xffffff} << 8),
+      near(0, std::int64_t{1} << 12);
   constexpr int kSizes[] = {40, 256, 700, 40 * 256, 400 * 256};
   for (std::size_t t = 0; t < triangles; ++t) {
     const std::int32_t x = place(random), y = place(random);
     std::uniform_int_distribution<std::int32_t> offset(-kSizes[size(random)], kSizes[4] / 1000);
     const int kind = one_of(random);
+    const std::int64_t z = depth(random) >> 1;
     for (int k = 0; k < 3; ++k) {
       soup.indices.push_back(static_cast<std::uint32_t>(soup.x_fx.size()));
       // Some coordinates lie on pixel centres and on a common row.
@@ -134,6 +146,7 @@ Soup triangle_soup(std::size_t triangles, std::mt19937& random) {
       soup.y_fx.push_back(kind == 0   ? far(random)
                           : kind == 1 ? y
                                       : (y + offset(random)) & (kind < 5 ? ~127 : ~0));
+      soup.z_fx.push_back(kind % 2 ? z + near(random) : depth(random));
     }
     if (kind == 2) soup.x_fx.back() = kClipped;
     if (kind == 3) soup.indices.back() = soup.indices[soup.indices.size() - 2];
@@ -141,14 +154,33 @@ Soup triangle_soup(std::size_t triangles, std::mt19937& random) {
   return soup;
 }
 
+/// The plane of triangle i of the batch is make_depth_plane's and depth_base_at's, which depth
+/// accuracy tests hold to the rational value.
+void expect_plane(const Soup& soup, std::size_t t, const TriangleBatch& batch, std::size_t i) {
+  const std::uint32_t* const corner = soup.indices.data() + 3 * t;
+  const bool clockwise = (batch.clockwise >> i & 1) != 0;
+  const std::array<SnappedVertex, 3> vertices{soup.vertex(corner[0]),
+                                              soup.vertex(corner[clockwise ? 2 : 1]),
+                                              soup.vertex(corner[clockwise ? 1 : 2])};
+  const auto area = static_cast<std::int64_t>(std::abs(batch.area[i]));
+  const DepthPlane plane =
+      make_depth_plane(vertices, area, std::nullopt, DepthFormat::d24, 0, 0xffffff);
+  EXPECT_EQ(static_cast<std::uint64_t>(batch.step_x[i]), plane.step_x) << "triangle " << t;
+  EXPECT_EQ(static_cast<std::uint64_t>(batch.step_y[i]), plane.step_y) << "triangle " << t;
+  EXPECT_TRUE(plane.narrow) << "triangle " << t;
+  const int x = batch.x0[i] / kTileSize * kTileSize, y = batch.y0[i] / kTileSize * kTileSize;
+  EXPECT_EQ(static_cast<std::uint64_t>(batch.base[i]), depth_base_at(vertices, area, x, y))
+      << "triangle " << t;
+}
+
 TEST_P(FrontEnd, SelectsTrianglesAsPlainCode) {
   std::mt19937 random(2);
   const Soup soup = triangle_soup(20000, random);
-  std::size_t kept = 0, clipped = 0, turned_down = 0;
+  std::size_t kept = 0, clipped = 0, turned_down = 0, planes = 0;
   for (const bool ccw : {false, true}) {
     for (const bool cw : {false, true}) {
       for (const PixelBox& box : {PixelBox{0, 0, 100, 100}, PixelBox{30, 40, 33, 41}}) {
-        const TriangleSelector selector{soup.x_fx.data(), soup.y_fx.data(), ccw, cw, box};
+        const TriangleSelector selector = soup.selector(ccw, cw, box);
         std::size_t count = 1;
         for (std::size_t t = 0; t + count <= 20000; t += count, count = count % 64 + 1) {
           TriangleBatch expected, actual;
@@ -166,9 +198,12 @@ TEST_P(FrontEnd, SelectsTrianglesAsPlainCode) {
             EXPECT_EQ(actual.x1[i], expected.x1[i]);
             EXPECT_EQ(actual.y1[i], expected.y1[i]);
           });
+          ASSERT_EQ(actual.planes & ~actual.kept, 0u) << "from triangle " << t;
+          for_each_bit(actual.planes, [&](std::size_t i) { expect_plane(soup, t + i, actual, i); });
           const auto number = [](TriangleMask mask) {
             return static_cast<std::size_t>(std::popcount(mask));
           };
+          planes += number(actual.planes);
           kept += number(expected.kept);
           clipped += number(expected.clipped);
           turned_down += count - number(expected.kept | expected.clipped);
@@ -179,6 +214,7 @@ TEST_P(FrontEnd, SelectsTrianglesAsPlainCode) {
   EXPECT_GT(kept, 5000u);
   EXPECT_GT(clipped, 5000u);
   EXPECT_GT(turned_down, 50000u);
+  EXPECT_GE(planes, GetParam() == Isa::scalar ? 0u : 2000u);
 }
 
 /// What is turned down covers nothing, and what is kept and tiny covers something.
@@ -186,7 +222,7 @@ TEST(SelectTriangles, TurnsDownWhatCoversNoPixel) {
   std::mt19937 random(3);
   const Soup soup = triangle_soup(5000, random);
   const PixelBox box{0, 0, 100, 100};
-  const TriangleSelector selector{soup.x_fx.data(), soup.y_fx.data(), true, true, box};
+  const TriangleSelector selector = soup.selector(true, true, box);
   std::size_t tiny = 0;
   for (std::size_t t = 0; t < 5000; ++t) {
     const std::uint32_t* const corner = soup.indices.data() + 3 * t;
