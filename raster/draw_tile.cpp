@@ -163,7 +163,8 @@ constexpr int kFewBlocks = 4;
 
 }  // namespace
 
-FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets) {
+FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets,
+                                  std::pmr::memory_resource& memory) {
   FragmentSetup setup;
   setup.color = targets.color && any(draw.state.color.write);
   setup.front = make_face_setup(resolve_tests(draw, targets, true), setup.color);
@@ -181,7 +182,7 @@ FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets) {
   if (is_constant(draw))
     setup.constant = shade(draw.shading, Fragment{});
   else
-    setup.shading = make_draw_shading(draw);
+    setup.shading = make_draw_shading(draw, memory);
   return setup;
 }
 

@@ -2,6 +2,7 @@
 // decides as a whole, and the tests, stencil updates and colours of the rest.
 #pragma once
 
+#include <memory_resource>
 #include <optional>
 
 #include "raster/depth_decision.h"
@@ -44,7 +45,9 @@ struct FragmentSetup {
   bool uses_stencil = false;
 };
 
-FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets);
+/// `memory` outlives it.
+FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets,
+                                  std::pmr::memory_resource& memory);
 
 /// A draw on its way through one tile.
 class DrawInTile {

@@ -5,6 +5,8 @@
 #include "raster/execute.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory_resource>
 #include <optional>
 #include <vector>
 
@@ -50,6 +52,8 @@ struct Task {
 }  // namespace
 
 struct ExecuteMemory::Parts {
+  /// For what jobs hold; keeps what they give back.
+  std::pmr::unsynchronized_pool_resource pool;
   std::vector<Job> jobs;
   /// The first geometry_count of them are in use.
   std::vector<std::unique_ptr<DrawGeometry>> geometries;
@@ -82,7 +86,7 @@ void set_up_draws(Memory& memory) {
     const Draw* draw = std::get_if<Draw>(job.command);
     if (!draw) continue;
     job.setup = make_draw_setup(*draw, job.targets);
-    job.fragments = make_fragment_setup(*draw, job.targets);
+    job.fragments = make_fragment_setup(*draw, job.targets, memory.pool);
     job.geometry = geometry_of(memory, job.setup);
   }
   for (std::size_t g = 0; g < memory.geometry_count; ++g) {
@@ -155,17 +159,19 @@ bool must_wait(const std::vector<Job>& jobs, const Command& command, const Targe
 void run_group(Memory& memory, const Size& size, const Kernels& kernels, int threads) {
   if (memory.jobs.empty()) return;
   set_up_draws(memory);
-  const Phase phases[] = {{memory.vertices.size(),
-                           [&](std::size_t i) {
-                             const Task& task = memory.vertices[i];
-                             task.geometry->run_vertices(kernels, task.first, task.last);
-                           }},
-                          {memory.chunks.size(),
-                           [&](std::size_t i) {
-                             memory.chunks[i].geometry->run_chunk(kernels, memory.chunks[i].first);
-                           }},
-                          {static_cast<std::size_t>(size.tiles_x()) * size.tiles_y(),
-                           [&](std::size_t tile) { run_tile(memory, kernels, tile, size); }}};
+  const auto run_vertices = [&](std::size_t i) {
+    const Task& task = memory.vertices[i];
+    task.geometry->run_vertices(kernels, task.first, task.last);
+  };
+  const auto run_chunk = [&](std::size_t i) {
+    memory.chunks[i].geometry->run_chunk(kernels, memory.chunks[i].first);
+  };
+  const auto run_one_tile = [&](std::size_t tile) { run_tile(memory, kernels, tile, size); };
+  // References, so that a std::function allocates nothing.
+  const Phase phases[] = {
+      {memory.vertices.size(), std::ref(run_vertices)},
+      {memory.chunks.size(), std::ref(run_chunk)},
+      {static_cast<std::size_t>(size.tiles_x()) * size.tiles_y(), std::ref(run_one_tile)}};
   run_phases(phases, threads);
   memory.jobs.clear();
 }

@@ -1,12 +1,13 @@
 #include "raster/executor.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
-#include <deque>
 #include <exception>
 #include <mutex>
 #include <thread>
-#include <vector>
+
+#include "raster/check.h"
 
 namespace gnomon::raster {
 
@@ -19,15 +20,19 @@ struct alignas(64) Share {
   std::size_t end = 0;
 };
 
+/// Threads beyond these share shares.
+constexpr std::size_t kMostShares = 16;
+constexpr std::size_t kMostPhases = 3;
+
 /// Pieces of one phase as threads take and finish them.
 struct Progress {
-  std::vector<Share> shares;
+  std::array<Share, kMostShares> shares;
   std::atomic<std::size_t> finished{0};
 
-  Progress(std::size_t pieces, std::size_t threads) : shares(threads) {
-    for (std::size_t i = 0; i < threads; ++i) {
-      shares[i].next = pieces * i / threads;
-      shares[i].end = pieces * (i + 1) / threads;
+  void begin(std::size_t pieces, std::size_t share_count) {
+    for (std::size_t i = 0; i < share_count; ++i) {
+      shares[i].next = pieces * i / share_count;
+      shares[i].end = pieces * (i + 1) / share_count;
     }
   }
 };
@@ -35,16 +40,17 @@ struct Progress {
 /// The phases on their way; every thread that helps calls work().
 class Run {
  public:
-  Run(std::span<const Phase> phases, std::size_t threads) : phases_(phases) {
-    for (const Phase& phase : phases) progress_.emplace_back(phase.count, threads);
+  Run(std::span<const Phase> phases, std::size_t threads)
+      : phases_(phases), share_count_(std::min(threads, kMostShares)) {
+    for (std::size_t p = 0; p < phases.size(); ++p)
+      progress_[p].begin(phases[p].count, share_count_);
   }
 
   void work(std::size_t thread) {
     for (std::size_t p = 0; p < phases_.size(); ++p) {
       Progress& progress = progress_[p];
-      const std::size_t threads = progress.shares.size();
-      for (std::size_t i = 0; i < threads; ++i)
-        take_pieces(phases_[p], progress.shares[(thread + i) % threads], progress.finished);
+      for (std::size_t i = 0; i < share_count_; ++i)
+        take_pieces(phases_[p], progress.shares[(thread + i) % share_count_], progress.finished);
       // What the others still have in hand is at most one piece each.
       while (progress.finished.load(std::memory_order_acquire) < phases_[p].count) {
         if (failed_.load(std::memory_order_acquire)) return;
@@ -74,7 +80,8 @@ class Run {
   }
 
   std::span<const Phase> phases_;
-  std::deque<Progress> progress_;
+  const std::size_t share_count_;
+  std::array<Progress, kMostPhases> progress_;
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
   std::mutex failure_lock_;
@@ -83,6 +90,7 @@ class Run {
 }  // namespace
 
 void run_phases(std::span<const Phase> phases, int threads) {
+  require(phases.size() <= kMostPhases, "a run has at most three phases");
   std::size_t most = 0;
   for (const Phase& phase : phases) most = std::max(most, phase.count);
   if (threads == 0) threads = machine_threads();

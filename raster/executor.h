@@ -14,12 +14,12 @@ struct Phase {
   std::function<void(std::size_t piece)> run;
 };
 
-/// Runs the phases one after the other, the pieces of each in any order, on up to `threads` threads
-/// (0: the machine's). With threads = 1 everything runs on the calling thread, in order, and no
-/// scheduler is touched. An exception of a piece reaches the caller; pieces not begun are left out.
-/// Threads are asked for once, not once a phase: a late one finds its work where it is. Each begins
-/// with a share of the pieces that is its own in every call, so that what it wrote the last time is
-/// still in its core's cache, and then helps with the others'.
+/// Runs the phases, at most three, one after the other, the pieces of each in any order, on up to
+/// `threads` threads (0: the machine's). With threads = 1 everything runs on the calling thread, in
+/// order, and no scheduler is touched. An exception of a piece reaches the caller; pieces not begun
+/// are left out. Threads are asked for once, not once a phase: a late one finds its work where it
+/// is. Each begins with a share of the pieces that is its own in every call, so that what it wrote
+/// the last time is still in its core's cache, and then helps with the others'.
 void run_phases(std::span<const Phase> phases, int threads);
 
 /// Calls body(first, last) for consecutive chunks of [0, count), in any order.

@@ -114,6 +114,8 @@ struct LitLight {
   float attenuation[3];
   /// The attenuation is 1, 0, 0.
   bool keeps_strength;
+  /// Adding the ambient term can change a colour.
+  bool ambient_matters;
   float spot_direction[3];
   float spot_cos_cutoff;
   int spot_exponent;

@@ -140,7 +140,7 @@ HWY_INLINE void add_light(const LitLight& light, const LitTerms& lit, const Vect
     strength = hn::IfThenZeroElse(hn::Lt(cosine, set(light.spot_cos_cutoff)),
                                   hn::Mul(strength, power(positive, light.spot_exponent)));
   }
-  sums.ambient = add(sums.ambient, scaled(set(light.ambient), strength));
+  if (light.ambient_matters) sums.ambient = add(sums.ambient, scaled(set(light.ambient), strength));
   const VF32 n_dot_l = dot3(normal, to_light);
   const auto faces = hn::Gt(n_dot_l, zero);
   sums.diffuse =
@@ -192,8 +192,10 @@ HWY_INLINE Vector3 lit_color(const TileShading& s, VF32 p0, VF32 p1, VF32 p2, co
   LightSums sums{set(lit.scene_ambient), {zero, zero, zero}, {zero, zero, zero}};
   for (int i = 0; i < lit.light_count; ++i) add_light(lit.lights[i], lit, normal, world, sums);
   Vector3 color{zero, zero, zero};
-  if (lit.ambient) color = add(color, mul(mul(set(lit.material_ambient), sums.ambient), base));
-  if (lit.diffuse) color = add(color, mul(mul(set(lit.material_diffuse), sums.diffuse), base));
+  // Without colours the base is 1.
+  const auto tinted = [&](const Vector3& v) HWY_ATTR { return s.has_colors ? mul(v, base) : v; };
+  if (lit.ambient) color = add(color, tinted(mul(set(lit.material_ambient), sums.ambient)));
+  if (lit.diffuse) color = add(color, tinted(mul(set(lit.material_diffuse), sums.diffuse)));
   if (lit.specular && lit.specular_matters)
     color = add(color, mul(set(lit.material_specular), sums.specular));
   if (lit.emission) color = add(color, set(lit.material_emission));

@@ -46,6 +46,10 @@ LitLight make_light(const Light& light) {
   copy(light.spot_direction, out.spot_direction);
   out.spot_cos_cutoff = light.spot_cos_cutoff;
   out.spot_exponent = light.spot_exponent;
+  // The strength is 0 or 1 then, and 0 times it is 0.
+  const bool finite_strength =
+      (light.position.w == 0.0f || out.keeps_strength) && light.spot_cos_cutoff <= -1.0f;
+  out.ambient_matters = light.ambient != glm::vec3(0.0f) || !finite_strength;
   return out;
 }
 
@@ -58,7 +62,8 @@ LitTerms make_lit(const Lit& lit) {
   out.material_alpha = lit.material.alpha;
   out.shininess = lit.material.shininess;
   out.ambient = lit.ambient;
-  out.emission = lit.emission;
+  // A colour that 0 is added to stays: it is never -0, because it began as 0.
+  out.emission = lit.emission && lit.material.emission != glm::vec3(0.0f);
   out.diffuse = lit.diffuse;
   out.specular = lit.specular;
   out.specular_matters = specular_matters(lit);
@@ -76,14 +81,14 @@ LitTerms make_lit(const Lit& lit) {
 
 }  // namespace
 
-std::optional<DrawShading> make_draw_shading(const Draw& draw) {
+std::optional<DrawShading> make_draw_shading(const Draw& draw, std::pmr::memory_resource& memory) {
   if (const Flat* flat = std::get_if<Flat>(&draw.shading)) {
     if (flat->texture || flat->depth_lookup) return std::nullopt;
-    return DrawShading{};
+    return DrawShading{.lights = std::pmr::vector<LitLight>(&memory)};
   }
   const Lit& lit = std::get<Lit>(draw.shading);
   if (lit.texture) return std::nullopt;
-  DrawShading shading;
+  DrawShading shading{.lights = std::pmr::vector<LitLight>(&memory)};
   for (const Light& light : lit.lights) {
     if (light.shadow_map) return std::nullopt;
     shading.lights.push_back(make_light(light));

@@ -2,6 +2,7 @@
 // need neither texture nor lookup.
 #pragma once
 
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,13 +16,14 @@ namespace gnomon::raster {
 /// What all blocks of a draw share.
 struct DrawShading {
   std::optional<LitTerms> lit;
-  std::vector<LitLight> lights;
+  std::pmr::vector<LitLight> lights;
   /// With `lit`, back faces are lit with the reversed normal.
   bool two_sided = false;
 };
 
-/// Absent if the draw is shaded pixel by pixel.
-std::optional<DrawShading> make_draw_shading(const Draw& draw);
+/// Absent if the draw is shaded pixel by pixel. `memory` outlives the result, which may be moved
+/// but not copied: `lit` points at `lights`.
+std::optional<DrawShading> make_draw_shading(const Draw& draw, std::pmr::memory_resource& memory);
 
 /// A triangle's shading in the tile whose first pixel is (x, y).
 TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
