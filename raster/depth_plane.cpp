@@ -64,6 +64,14 @@ std::int64_t offset_in_plane_units(const PolygonOffset& offset, double slope, in
 
 }  // namespace
 
+bool is_narrow(const std::array<SnappedVertex, 3>& vertices, std::int64_t offset,
+               DepthFormat format, std::uint32_t low, std::uint32_t high) {
+  const int fraction_bits = depth_fraction_bits(format);
+  const auto [z_min, z_max] = std::minmax({vertices[0].z_fx, vertices[1].z_fx, vertices[2].z_fx});
+  return z_min + offset >= static_cast<std::int64_t>(low) << fraction_bits &&
+         z_max + offset <= static_cast<std::int64_t>(high) << fraction_bits;
+}
+
 DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,
                             const std::optional<PolygonOffset>& offset, DepthFormat format,
                             std::uint32_t low, std::uint32_t high) {
@@ -84,9 +92,7 @@ DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::i
     const double slope = static_cast<double>(largest) * 256.0 / static_cast<double>(area);
     plane.offset = offset_in_plane_units(*offset, slope, fraction_bits);
   }
-  const auto [z_min, z_max] = std::minmax({vertices[0].z_fx, vertices[1].z_fx, vertices[2].z_fx});
-  plane.narrow = z_min + plane.offset >= static_cast<std::int64_t>(low) << fraction_bits &&
-                 z_max + plane.offset <= static_cast<std::int64_t>(high) << fraction_bits;
+  plane.narrow = is_narrow(vertices, plane.offset, format, low, high);
   return plane;
 }
 

@@ -58,6 +58,11 @@ DepthPlane make_depth_plane(const std::array<SnappedVertex, 3>& vertices, std::i
                             const std::optional<PolygonOffset>& offset, DepthFormat format,
                             std::uint32_t low, std::uint32_t high);
 
+/// Every covered pixel's value fits 32 bits and needs no clamp: the vertices' depths,
+/// `offset` added, lie between those of low and high.
+bool is_narrow(const std::array<SnappedVertex, 3>& vertices, std::int64_t offset,
+               DepthFormat format, std::uint32_t low, std::uint32_t high);
+
 /// base of the tile whose bottom left pixel is (x_px, y_px), modulo 2^64. `area` is positive; the
 /// polygon offset was added to the vertices.
 std::uint64_t depth_base_at(const std::array<SnappedVertex, 3>& vertices, std::int64_t area,

@@ -27,8 +27,11 @@ TriangleSelector selector_of(const DrawSetup& setup, const std::int32_t* x_fx,
            state.cull != (front_facing ? Cull::front : Cull::back);
   };
   const bool ccw_is_front = state.front_face == FrontFace::ccw;
-  const bool plain_depths = !state.depth_clamp && !state.polygon_offset;
-  return {x_fx,     y_fx, plain_depths ? z_fx : nullptr, keeps(ccw_is_front), keeps(!ccw_is_front),
+  return {x_fx,
+          y_fx,
+          state.polygon_offset ? nullptr : z_fx,
+          keeps(ccw_is_front),
+          keeps(!ccw_is_front),
           setup.box};
 }
 
@@ -50,8 +53,7 @@ void set_up(const DrawSetup& setup, const TriangleBatch& batch, std::size_t t,
     out.step_x = static_cast<std::uint64_t>(batch.step_x[t]);
     out.step_y = static_cast<std::uint64_t>(batch.step_y[t]);
     out.base = static_cast<std::uint64_t>(batch.base[t]);
-    // No depth lies outside the depth range (selector_of).
-    out.narrow = true;
+    out.narrow = is_narrow(out.vertices, 0, setup.depth_format, setup.depth_low, setup.depth_high);
     return;
   }
   const auto area = static_cast<std::int64_t>(std::abs(batch.area[t]));

@@ -68,11 +68,11 @@ HWY_INLINE VI32 signed_areas(const CornerLanes& c, double* out) {
                  hn::VecFromMask(d, hn::RebindMask(d, hn::Gt(area, zero))));
 }
 
-/// A whole number between 0 and 2^51 as double, and one between -2^51 and 2^51 back: beside 2^52
-/// the last bit of a double is worth 1.
-HWY_INLINE VArea depth_to_double(hn::Vec<DDepth> depth) {
-  const VArea magic = hn::Set(DArea(), 0x1p52);
-  return hn::Sub(hn::BitCast(DArea(), hn::Or(depth, hn::BitCast(DDepth(), magic))), magic);
+/// A whole number between -2^51 and 2^51 to double and back: beside 2^52 the last bit of a double
+/// is worth 1.
+HWY_INLINE VArea to_double(hn::Vec<DDepth> whole) {
+  const VArea magic = hn::Set(DArea(), 0x1.8p52);
+  return hn::Sub(hn::BitCast(DArea(), hn::Add(whole, hn::BitCast(DDepth(), magic))), magic);
 }
 HWY_INLINE hn::Vec<DDepth> to_integer(VArea whole) {
   const VArea magic = hn::Set(DArea(), 0x1.8p52);
@@ -103,10 +103,12 @@ HWY_INLINE TriangleMask find_planes(const TriangleSelector& s, const CornerLanes
   const auto depth = [&](VI32 of) HWY_ATTR {
     return hn::GatherIndex(depth_d, s.z_fx, hn::PromoteTo(depth_d, half_of<kHalf>(of)));
   };
-  const auto anchor = depth(index[0]);
-  const VArea z0 = depth_to_double(anchor);
-  const VArea dz1 = hn::Sub(depth_to_double(depth(index[1])), z0);
-  const VArea dz2 = hn::Sub(depth_to_double(depth(index[2])), z0);
+  const auto z0 = depth(index[0]), z1 = depth(index[1]), z2 = depth(index[2]);
+  const VArea dz1 = to_double(hn::Sub(z1, z0)), dz2 = to_double(hn::Sub(z2, z0));
+  const auto shallow = [&](hn::Vec<DDepth> dz) HWY_ATTR {
+    return hn::And(hn::Lt(dz, hn::Set(depth_d, std::int64_t{1} << 36)),
+                   hn::Gt(dz, hn::Set(depth_d, -(std::int64_t{1} << 36))));
+  };
   const auto side = [&](const VI32(&v)[3], int k)
                         HWY_ATTR { return to_double<kHalf>(hn::Sub(v[k], v[0])); };
   const VArea dx1 = side(c.x, 1), dx2 = side(c.x, 2), dy1 = side(c.y, 1), dy2 = side(c.y, 2);
@@ -128,14 +130,15 @@ HWY_INLINE TriangleMask find_planes(const TriangleSelector& s, const CornerLanes
   const VArea subpixels = hn::Set(d, 256.0);
   const VArea rise_x = hn::Mul(slope_x, subpixels), rise_y = hn::Mul(slope_y, subpixels);
   const VArea limit = hn::Set(d, 0x1p49);
-  const auto exact =
+  const auto small_numbers =
       hn::And(hn::And(hn::Lt(hn::Abs(rise_x), limit), hn::Lt(hn::Abs(rise_y), limit)),
               hn::And(hn::Lt(hn::Abs(along_x), limit), hn::Lt(hn::Abs(along_y), limit)));
   hn::StoreU(to_integer(nearest_quotient(rise_x, area)), depth_d, out.step_x + i);
   hn::StoreU(to_integer(nearest_quotient(rise_y, area)), depth_d, out.step_y + i);
-  hn::StoreU(hn::Add(anchor, to_integer(nearest_quotient(hn::Add(along_x, along_y), area))),
-             depth_d, out.base + i);
-  return pixels_of(d, exact, i);
+  hn::StoreU(hn::Add(z0, to_integer(nearest_quotient(hn::Add(along_x, along_y), area))), depth_d,
+             out.base + i);
+  return pixels_of(d, small_numbers, i) &
+         pixels_of(depth_d, hn::And(shallow(hn::Sub(z1, z0)), shallow(hn::Sub(z2, z0))), i);
 }
 
 /// The lanes whose triangle, of this sign, covers the centre of one of the 2x2 pixels from (x0, y0)

@@ -23,7 +23,7 @@ inline constexpr int kTinyBox = 2;
 struct TriangleSelector {
   /// Snapped vertices (raster/project.h).
   const std::int32_t *x_fx = nullptr, *y_fx = nullptr;
-  /// Null: no planes are wanted. Otherwise between 0 and 2^51.
+  /// Null: no planes are wanted.
   const std::int64_t* z_fx = nullptr;
   /// Triangles that go counter-clockwise (clockwise) in the window are kept.
   bool keeps_ccw = true, keeps_cw = true;
