@@ -35,9 +35,9 @@ HWY_INLINE void count_related(bool opposite, std::uint8_t delta, const TestedBlo
   const PixelMask flip = opposite ? kAllPixels : 0;
   for (BlockMask rest = tested.blocks; rest; rest &= rest - 1) {
     const auto b = static_cast<std::size_t>(__builtin_ctzll(rest));
-    const Depths depths(tested.plane, b);
     const PixelMask pixels =
-        (related_depths<kRelation>(depths, tested.depth + b * kPixels, covered[b]) ^ flip) &
+        (related_depths<kRelation>(tested.plane, b, tested.depth + b * kPixels, covered[b]) ^
+         flip) &
         covered[b];
     if (pixels) add_to_pixels(deltas, pixels, tested.stencil + b * kPixels);
   }

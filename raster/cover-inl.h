@@ -16,22 +16,11 @@ HWY_BEFORE_NAMESPACE();
 namespace gnomon::raster {
 namespace HWY_NAMESPACE {
 
-/// value + x * step_x + y * step_y over an 8x8 grid of samples, vector by vector.
-class GridSums {
- public:
-  HWY_INLINE GridSums(std::int32_t value, std::int32_t step_x, std::int32_t step_y)
-      : value_(static_cast<std::uint32_t>(value)),
-        step_x_(static_cast<std::uint32_t>(step_x)),
-        step_y_(static_cast<std::uint32_t>(step_y)),
-        lanes_(lane_steps(DU32(), step_x_, step_y_)) {}
-  HWY_INLINE VU32 at(std::size_t i) const {
-    return hn::Add(hn::Set(DU32(), value_at(value_, step_x_, step_y_, i)), lanes_);
-  }
-
- private:
-  std::uint32_t value_, step_x_, step_y_;
-  VU32 lanes_;
-};
+/// Sums over the 8x8 blocks of a tile.
+HWY_INLINE RunningSums block_sums(std::int32_t value, std::int32_t step_x, std::int32_t step_y) {
+  const auto dx = static_cast<std::uint32_t>(step_x), dy = static_cast<std::uint32_t>(step_y);
+  return {lane_steps(DU32(), dx, dy), static_cast<std::uint32_t>(value), dx, dy};
+}
 
 HWY_INLINE PixelMask negative(VU32 sums, std::size_t i) {
   const DI32 d;
@@ -45,10 +34,10 @@ BlockMask cover_blocks(const TileEdges& edges, BlockMask& filled) noexcept {
     const std::int32_t dx = edges.step_x[k], dy = edges.step_y[k];
     const std::int32_t up = (dx > 0 ? dx : 0) + (dy > 0 ? dy : 0),
                        down = (dx < 0 ? dx : 0) + (dy < 0 ? dy : 0);
-    const GridSums greatest(edges.value[k] + up * kSpan, dx * 8, dy * 8);
+    RunningSums greatest = block_sums(edges.value[k] + up * kSpan, dx * 8, dy * 8);
     const VU32 spread = hn::Set(DU32(), static_cast<std::uint32_t>((down - up) * kSpan));
     for (std::size_t i = 0; i < kPixels; i += hn::Lanes(DU32())) {
-      const VU32 sums = greatest.at(i);
+      const VU32 sums = greatest.next(i);
       outside |= negative(sums, i);
       crossed |= negative(hn::Add(sums, spread), i);
     }
@@ -67,7 +56,7 @@ HWY_INLINE VectorRange rows_of(DU32 d, const TileEdges& edges, std::uint32_t b) 
   const int below = static_cast<int>(b / 8 * 8);
   const int first = edges.first_row > below ? edges.first_row - below : 0;
   const int end = edges.end_row < below + 8 ? edges.end_row - below : 8;
-  return {static_cast<std::size_t>(first) * kWidth & ~(hn::Lanes(d) - 1),
+  return {static_cast<std::size_t>(first) * kWidth & ~(rows_at_once(d) * kWidth - 1),
           static_cast<std::size_t>(end) * kWidth};
 }
 
@@ -81,21 +70,22 @@ HWY_INLINE BlockMask cover_pixels_of(const TileEdges& edges, BlockMask blocks, P
   BlockMask touched = 0;
   for (BlockMask rest = blocks; rest; rest &= rest - 1) {
     const auto b = static_cast<std::uint32_t>(__builtin_ctzll(rest));
-    std::uint32_t value[kCount];
-    for (int k = 0; k < kCount; ++k)
-      value[k] = static_cast<std::uint32_t>(edges.value[k]) +
-                 (b % 8) * 8 * static_cast<std::uint32_t>(edges.step_x[k]) +
-                 (b / 8) * 8 * static_cast<std::uint32_t>(edges.step_y[k]);
     const VectorRange range = rows_of(d, edges, b);
+    const auto sums_of = [&](int k) HWY_ATTR {
+      const auto dx = static_cast<std::uint32_t>(edges.step_x[k]),
+                 dy = static_cast<std::uint32_t>(edges.step_y[k]);
+      return RunningSums(
+          lanes[k], static_cast<std::uint32_t>(edges.value[k]) + b % 8 * 8 * dx + b / 8 * 8 * dy,
+          dx, dy, range.first / kWidth);
+    };
+    RunningSums first = sums_of(0), second = sums_of(kCount > 1 ? 1 : 0),
+                third = sums_of(kCount > 2 ? 2 : 0);
     PixelMask inside = 0;
     for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
       // A pixel is out if any edge's sign bit is set there.
-      VU32 any = hn::Zero(d);
-      for (int k = 0; k < kCount; ++k)
-        any = hn::Or(
-            any, hn::Add(hn::Set(d, value_at(value[k], static_cast<std::uint32_t>(edges.step_x[k]),
-                                             static_cast<std::uint32_t>(edges.step_y[k]), i)),
-                         lanes[k]));
+      VU32 any = first.next(i);
+      if constexpr (kCount > 1) any = hn::Or(any, second.next(i));
+      if constexpr (kCount > 2) any = hn::Or(any, third.next(i));
       inside |= not_negative(any, i);
     }
     covered[b] = inside;

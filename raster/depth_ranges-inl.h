@@ -35,14 +35,14 @@ DecidedBlocks compare_ranges(const BlockDepths& depths, const std::uint32_t* lea
                              const std::uint32_t* greatest, std::int32_t below_slack,
                              std::int32_t above_slack) noexcept {
   const DI32 d;
-  const GridSums low(depths.low, depths.low_step_x, depths.low_step_y);
-  const GridSums high(depths.high, depths.high_step_x, depths.high_step_y);
+  RunningSums low = block_sums(depths.low, depths.low_step_x, depths.low_step_y);
+  RunningSums high = block_sums(depths.high, depths.high_step_x, depths.high_step_y);
   const VI32 floor = hn::Set(d, depths.least), ceiling = hn::Set(d, depths.greatest);
   const VI32 below = hn::Set(d, below_slack), above = hn::Set(d, above_slack);
   DecidedBlocks decided;
   for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
-    const VI32 bottom = hn::Min(hn::Max(hn::BitCast(d, low.at(i)), floor), ceiling);
-    const VI32 top = hn::Max(hn::Min(hn::BitCast(d, high.at(i)), ceiling), floor);
+    const VI32 bottom = hn::Min(hn::Max(hn::BitCast(d, low.next(i)), floor), ceiling);
+    const VI32 top = hn::Max(hn::Min(hn::BitCast(d, high.next(i)), ceiling), floor);
     const VI32 stored_least = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(least) + i);
     const VI32 stored_greatest = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(greatest) + i);
     decided.below |= pixels_of(d, hn::Lt(top, hn::Add(stored_least, below)), i);

@@ -42,17 +42,24 @@ HWY_INLINE PixelMask pixels_of(D d, hn::Mask<D> mask, std::size_t first) {
   return bits << first;
 }
 
-/// The vectors of a block that some pixels lie in: first lanes first <= i < end, a vector apart.
+/// The vectors of a block with the rows that some pixels lie in: first lanes first <= i < end, a
+/// vector apart.
 struct VectorRange {
   std::size_t first, end;
 };
+
+/// Rows of 8 lanes, or more where a vector has more.
+template <class D>
+constexpr std::size_t rows_at_once(D d) {
+  return hn::MaxLanes(d) > kWidth ? hn::MaxLanes(d) / kWidth : 1;
+}
 
 /// Precondition: there are some.
 template <class D>
 HWY_INLINE VectorRange vectors_of(D d, PixelMask pixels) {
   const auto first = static_cast<std::size_t>(__builtin_ctzll(pixels));
   const auto end = kPixels - static_cast<std::size_t>(__builtin_clzll(pixels));
-  return {first & ~(hn::Lanes(d) - 1), end};
+  return {first & ~(rows_at_once(d) * kWidth - 1), end};
 }
 
 /// x * step_x + y * step_y for the pixels of a vector whose first lane is pixel (0, 0); sums are
@@ -63,12 +70,27 @@ HWY_INLINE VU32 lane_steps(DU32 d, std::uint32_t step_x, std::uint32_t step_y) {
   return hn::Add(hn::Mul(x, hn::Set(d, step_x)), hn::Mul(y, hn::Set(d, step_y)));
 }
 
-/// The plane's value at pixel `first` of a block.
-HWY_INLINE std::uint32_t value_at(std::uint32_t base, std::uint32_t step_x, std::uint32_t step_y,
-                                  std::size_t first) {
-  return base + static_cast<std::uint32_t>(first % kWidth) * step_x +
-         static_cast<std::uint32_t>(first / kWidth) * step_y;
-}
+/// Sums base + x * step_x + y * step_y over an 8x8 grid, a vector after the other: what next(i)
+/// gives is for pixels [i, i + Lanes), where i is the first one that was asked for and then goes up
+/// a vector at a time. `lanes` is lane_steps of the same steps.
+class RunningSums {
+ public:
+  HWY_INLINE RunningSums(VU32 lanes, std::uint32_t base, std::uint32_t step_x, std::uint32_t step_y,
+                         std::size_t first_row = 0)
+      : left_(
+            hn::Add(hn::Set(DU32(), base + static_cast<std::uint32_t>(first_row) * step_y), lanes)),
+        to_right_(hn::Set(DU32(), static_cast<std::uint32_t>(hn::Lanes(DU32())) * step_x)),
+        up_(hn::Set(DU32(), static_cast<std::uint32_t>(rows_at_once(DU32())) * step_y)) {}
+
+  HWY_INLINE VU32 next(std::size_t i) {
+    const VU32 sums = i % kWidth == 0 ? left_ : hn::Add(left_, to_right_);
+    if ((i + hn::Lanes(DU32())) % kWidth == 0) left_ = hn::Add(left_, up_);
+    return sums;
+  }
+
+ private:
+  VU32 left_, to_right_, up_;
+};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace gnomon::raster

@@ -99,59 +99,67 @@ HWY_INLINE void wide_depths(const TileDepth& plane, std::uint64_t base, std::uin
   }
 }
 
-/// The 64 depths of a plane in block b of the tile, vector by vector.
+/// The depths of a plane in block b of the tile, a vector after the other (RunningSums::next).
 class Depths {
  public:
-  HWY_INLINE Depths(const TileDepth& plane, std::size_t b) : plane_(plane) {
-    const std::uint64_t base = plane.base + (b % 8) * 8 * plane.step_x + (b / 8) * 8 * plane.step_y;
-    base_ = static_cast<std::uint32_t>(base);
-    if (plane.narrow)
-      steps_ = lane_steps(DU32(), static_cast<std::uint32_t>(plane.step_x),
-                          static_cast<std::uint32_t>(plane.step_y));
-    else
-      wide_depths(plane, base, wide_);
+  HWY_INLINE Depths(const TileDepth& plane, std::size_t b, std::size_t first_row)
+      : narrow_(plane.narrow),
+        fraction_bits_(plane.fraction_bits),
+        sums_(sums_of(plane, base_of(plane, b), first_row)) {
+    if (!narrow_) wide_depths(plane, base_of(plane, b), wide_);
   }
-  HWY_INLINE VI32 at(std::size_t i) const {
+  HWY_INLINE VI32 next(std::size_t i) {
     const DU32 d;
-    if (!plane_.narrow) return hn::BitCast(DI32(), hn::LoadU(d, wide_ + i));
-    const std::uint32_t base = value_at(base_, static_cast<std::uint32_t>(plane_.step_x),
-                                        static_cast<std::uint32_t>(plane_.step_y), i);
-    const VU32 value = hn::Add(hn::Set(d, base), steps_);
-    return hn::BitCast(
-        DI32(), plane_.fraction_bits == 8 ? hn::ShiftRight<8>(value) : hn::ShiftRight<16>(value));
+    if (!narrow_) return hn::BitCast(DI32(), hn::LoadU(d, wide_ + i));
+    const VU32 value = sums_.next(i);
+    return hn::BitCast(DI32(),
+                       fraction_bits_ == 8 ? hn::ShiftRight<8>(value) : hn::ShiftRight<16>(value));
   }
 
  private:
-  const TileDepth& plane_;
-  std::uint32_t base_ = 0;
-  VU32 steps_;
+  static HWY_INLINE std::uint64_t base_of(const TileDepth& plane, std::size_t b) {
+    return plane.base + b % 8 * 8 * plane.step_x + b / 8 * 8 * plane.step_y;
+  }
+  static HWY_INLINE RunningSums sums_of(const TileDepth& plane, std::uint64_t base,
+                                        std::size_t first_row) {
+    const auto dx = static_cast<std::uint32_t>(plane.step_x),
+               dy = static_cast<std::uint32_t>(plane.step_y);
+    return {lane_steps(DU32(), dx, dy), static_cast<std::uint32_t>(base), dx, dy, first_row};
+  }
+
+  const bool narrow_;
+  const int fraction_bits_;
+  RunningSums sums_;
   std::uint32_t wide_[kPixels];
 };
 
 /// The pixels whose depth stands in the relation to the stored one, where they lie in a vector with
 /// one of `candidates`. Depths have at most 24 bits, so signed comparison is right.
 template <Relation kRelation>
-HWY_INLINE PixelMask related_depths(const Depths& depths, const std::uint32_t* depth,
-                                    PixelMask candidates) {
+HWY_INLINE PixelMask related_depths(const TileDepth& plane, std::size_t b,
+                                    const std::uint32_t* depth, PixelMask candidates) {
   const DI32 d;
   const auto* const stored = reinterpret_cast<const std::int32_t*>(depth);
   const VectorRange range = vectors_of(d, candidates);
+  Depths depths(plane, b, range.first / kWidth);
   PixelMask mask = 0;
   for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d))
-    mask |= pixels_of(d, related<kRelation>(depths.at(i), hn::LoadU(d, stored + i)), i);
+    mask |= pixels_of(d, related<kRelation>(depths.next(i), hn::LoadU(d, stored + i)), i);
   return mask;
 }
 
-HWY_INLINE void write_depths(const Depths& depths, PixelMask pixels, std::uint32_t* depth) {
+HWY_INLINE void write_depths(const TileDepth& plane, std::size_t b, PixelMask pixels,
+                             std::uint32_t* depth) {
   const DI32 d;
   auto* const stored = reinterpret_cast<std::int32_t*>(depth);
   const VectorRange range = vectors_of(d, pixels);
+  Depths depths(plane, b, range.first / kWidth);
   for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d))
-    hn::BlendedStore(depths.at(i), lanes_of(d, pixels, i), d, stored + i);
+    hn::BlendedStore(depths.next(i), lanes_of(d, pixels, i), d, stored + i);
 }
 
 /// Of the pixels `candidates`, which are some, those that pass.
-HWY_INLINE PixelMask compare_depths(CompareFunc func, const Depths& depths,
+HWY_INLINE PixelMask compare_depths(CompareFunc func, const TileDepth& plane, std::size_t b,
                                     const std::uint32_t* depth, PixelMask candidates) {
   if (func == CompareFunc::never) return 0;
   if (func == CompareFunc::always) return candidates;
@@ -159,13 +167,13 @@ HWY_INLINE PixelMask compare_depths(CompareFunc func, const Depths& depths,
   PixelMask mask = 0;
   switch (c.relation) {
     case Relation::less:
-      mask = related_depths<Relation::less>(depths, depth, candidates);
+      mask = related_depths<Relation::less>(plane, b, depth, candidates);
       break;
     case Relation::equal:
-      mask = related_depths<Relation::equal>(depths, depth, candidates);
+      mask = related_depths<Relation::equal>(plane, b, depth, candidates);
       break;
     case Relation::greater:
-      mask = related_depths<Relation::greater>(depths, depth, candidates);
+      mask = related_depths<Relation::greater>(plane, b, depth, candidates);
       break;
   }
   return candidates & (c.opposite ? ~mask : mask);
@@ -179,10 +187,9 @@ HWY_INLINE PixelMask test_depth(const FragmentTests& tests, const TestedBlocks& 
   if ((tested.depth_fails >> b & 1) != 0) return 0;
   if (passes && !tests.depth_write) return candidates;
   std::uint32_t* const depth = tested.depth + b * kPixels;
-  const Depths depths(tested.plane, b);
   const PixelMask passed =
-      passes ? candidates : compare_depths(tests.depth_func, depths, depth, candidates);
-  if (tests.depth_write && passed) write_depths(depths, passed, depth);
+      passes ? candidates : compare_depths(tests.depth_func, tested.plane, b, depth, candidates);
+  if (tests.depth_write && passed) write_depths(tested.plane, b, passed, depth);
   return passed;
 }
 
