@@ -77,7 +77,10 @@ class Maker {
         choose_method(options_.method, region_, light_.position, topology, world_from_model);
     if (in_view_ && !find_window(object, placed)) return;
     Silhouette& silhouette = worker.silhouette;
-    find_silhouette(topology, light_model, silhouette);
+    if (options_.classical)
+      find_classical_silhouette(topology, light_model, silhouette);
+    else
+      find_silhouette(topology, light_model, silhouette);
     if (needs_reach(options_)) {
       worker.casting.assign(topology, silhouette.casting, world_from_model);
       placed.reach = find_reach(light_.position, worker.casting, receivers_);

@@ -76,6 +76,10 @@ struct VolumeOptions {
   Extrusion extrusion;
   /// The plain method: every volume has both caps.
   bool all_caps = false;
+  /// Volumes as renderers make them that ask for closed manifolds (find_classical_silhouette):
+  /// wrong for other meshes. Everything here that is said of counts holds for closed manifolds only
+  /// then.
+  bool classical = false;
   /// Casters of this role are counted also where they are not in the depth buffer, so their volumes
   /// keep the front cap. All others must be in it, drawn with surface_state and their PlacedObject.
   std::optional<Role> counted_before_drawn = {};

@@ -122,6 +122,22 @@ void find_silhouette(const Topology& topology, const glm::dvec4& light_model,
   trace_pairs(topology, next, static_cast<std::uint32_t>(topology.edges.size()), silhouette);
 }
 
+void find_classical_silhouette(const Topology& topology, const glm::dvec4& light_model,
+                               Silhouette& silhouette) {
+  silhouette.casting.resize(topology.triangle_count());
+  mark_casting(topology.planes, light_model, 0, silhouette.casting);
+  silhouette.edges.clear();
+  for (const Edge& edge : topology.edges) {
+    const std::span<const EdgeUse> uses = topology.uses_of(edge);
+    const auto faces = [&](std::size_t i) { return silhouette.casting[uses[i].triangle] != 0; };
+    const bool first = faces(0), second = uses.size() > 1 && faces(1);
+    if (first == second) continue;
+    const bool forward = uses[first ? 0 : 1].sign > 0;
+    silhouette.edges.push_back(forward ? SilhouetteEdge{edge.a, edge.b, 1}
+                                       : SilhouetteEdge{edge.b, edge.a, 1});
+  }
+}
+
 Silhouette find_silhouette(const Topology& topology, const glm::dvec4& light_model) {
   Silhouette silhouette;
   find_silhouette(topology, light_model, silhouette);

@@ -45,4 +45,12 @@ Silhouette find_silhouette(const Topology& topology, const glm::dvec4& light_mod
 void find_silhouette(const Topology& topology, const glm::dvec4& light_model,
                      Silhouette& silhouette);
 
+/// What renderers do that ask for closed manifolds, for comparison: the triangles that face the
+/// light cast, and an edge knows two triangles at most (a third is forgotten). It is in the outline
+/// where one of them faces the light and the other does not, or where its only one faces the light.
+/// For a closed manifold with the light outside this is the silhouette above; for other meshes the
+/// volume it makes need not be closed.
+void find_classical_silhouette(const Topology& topology, const glm::dvec4& light_model,
+                               Silhouette& silhouette);
+
 }  // namespace gnomon::pipeline

@@ -1,6 +1,9 @@
 #include "pipeline/silhouette.h"
 
+#include <algorithm>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -160,6 +163,62 @@ TEST(Silhouette, TransformWithoutInverseIsMisuse) {
   EXPECT_THROW(light_in_model({0, 1, 0, 1}, test::placed({}, {0, 1, 0}, 0, {1, 0, 1})),
                std::invalid_argument);
   EXPECT_THROW(light_in_model({0, 0, 0, 0}, glm::mat4(1.0f)), std::invalid_argument);
+}
+
+std::vector<SilhouetteEdge> sorted_edges(Silhouette silhouette) {
+  std::sort(silhouette.edges.begin(), silhouette.edges.end(),
+            [](const SilhouetteEdge& a, const SilhouetteEdge& b) {
+              return std::pair(a.from, a.to) < std::pair(b.from, b.to);
+            });
+  return silhouette.edges;
+}
+
+Silhouette classical_of(const Topology& topology, const glm::vec4& light) {
+  Silhouette silhouette;
+  find_classical_silhouette(topology, light_in_model(light, glm::mat4(1.0f)), silhouette);
+  return silhouette;
+}
+
+// Oracle: for closed manifolds both are the same by definition.
+TEST(ClassicalSilhouette, OfClosedManifoldsIsTheSilhouette) {
+  std::mt19937 random(7);
+  for (const pipeline::Mesh& mesh :
+       {test::box_mesh(glm::vec3(1.0f)), test::torus_mesh(0.7f, 0.2f, 24, 12),
+        test::icosphere_mesh(1.0f, 2)}) {
+    const Topology topology = build_topology(*model_of(mesh));
+    ASSERT_TRUE(topology.faults.closed_manifold());
+    for (int i = 0; i < 20; ++i) {
+      const glm::vec3 at = glm::normalize(test::uniform_point(random, -1.0f, 1.0f)) * 3.0f;
+      const glm::vec4 light(at, i % 2 == 0 ? 1.0f : 0.0f);
+      EXPECT_EQ(sorted_edges(classical_of(topology, light)), sorted_edges(of(topology, light)));
+    }
+  }
+}
+
+// Oracle: an open square casts from both sides by the silhouette, from its face alone classically.
+TEST(ClassicalSilhouette, ForgetsTheBackOfASheet) {
+  const Topology square = build_topology(*model_of(test::square_mesh(1.0f)));
+  EXPECT_EQ(classical_of(square, {0.0f, 2.0f, 0.0f, 1.0f}).edges.size(), 4u);
+  EXPECT_EQ(classical_of(square, {0.0f, -2.0f, 0.0f, 1.0f}).edges.size(), 0u);
+  EXPECT_EQ(of(square, {0.0f, -2.0f, 0.0f, 1.0f}).edges.size(), 4u);
+}
+
+// Oracle: three triangles at one edge, all facing the light: the edge is run twice one way and once
+// the other, so the robust outline has it once; the classical one sees two that face and drops it.
+TEST(ClassicalSilhouette, ForgetsTheThirdTriangleOfAnEdge) {
+  pipeline::Mesh fan;
+  fan.positions = {
+      {0, 0, 0, 1}, {0, 0, 1, 1}, {1, 0, 0.5f, 1}, {-1, 0, 0.5f, 1}, {-1, 0.5f, 0.5f, 1}};
+  fan.indices = {0, 1, 2, 1, 0, 3, 1, 0, 4};
+  const Topology topology = build_topology(*model_of(fan));
+  ASSERT_EQ(topology.faults.non_manifold_edges, 1u);
+  const auto has_shared_edge = [](const Silhouette& silhouette) {
+    return std::any_of(silhouette.edges.begin(), silhouette.edges.end(),
+                       [](const SilhouetteEdge& edge) { return edge.from + edge.to == 1; });
+  };
+  const glm::vec4 above{0.0f, 5.0f, 0.5f, 1.0f};
+  EXPECT_TRUE(has_shared_edge(of(topology, above)));
+  EXPECT_FALSE(has_shared_edge(classical_of(topology, above)));
 }
 
 }  // namespace
