@@ -34,16 +34,31 @@ raster::Frame record_general(const Scene& scene, const Camera& camera,
   for (const PlacedObject& object : objects) {
     draw_lit(frame, object, scene, camera, {.ambient = true, .emission = true}, surface);
   }
+  std::size_t map_number = 0;
   for (const Light& light : lights) {
     const std::string suffix = lights.size() > 1 ? ": " + light.name : "";
-    frame.begin_pass("shadow volumes" + suffix, targets);
+    std::optional<raster::DepthLookup> shadow_map;
+    std::optional<MapPlan> plan;
+    if (light.shadow == ShadowMethod::map) {
+      raster::require(options.maps != nullptr, "shadow maps need memory");
+      plan = plan_shadow_map(scene, light, camera, light.map);
+    }
+    if (plan && !plan->empty) {
+      raster::DepthBuffer& map = options.maps->map(map_number++, plan->size, light.map.format);
+      shadow_map = record_shadow_map(frame, objects, light, *plan, light.map.filter, map);
+    }
+    const bool counts =
+        light.shadow == ShadowMethod::volumes || (light.shadow == ShadowMethod::map && !plan);
+    frame.begin_pass((counts ? "shadow volumes" : "no volumes") + suffix, targets);
     frame.clear({.stencil = 0});
-    count_volumes(frame, make_volumes(objects, light, receivers, region, volume_options),
-                  {.appendix_letter = options.appendix_letter,
-                   .casters_drawn = !options.all_caps,
-                   .light_name = light.name});
+    if (counts)
+      count_volumes(frame, make_volumes(objects, light, receivers, region, volume_options),
+                    {.appendix_letter = options.appendix_letter,
+                     .casters_drawn = !options.all_caps,
+                     .light_name = light.name});
     frame.begin_pass("lit pass" + suffix, targets);
-    for (const PlacedObject& object : objects) add_light(frame, object, scene, camera, light);
+    for (const PlacedObject& object : objects)
+      add_light(frame, object, scene, camera, light, raster::BlendFactor::one, shadow_map);
   }
   return frame;
 }

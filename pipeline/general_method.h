@@ -1,9 +1,12 @@
-// The general method of shadow volumes (Haller 2003, section 3.1.2): an ambient pass, then for each
-// light the counts in the stencil buffer and a pass that adds the light where the count is 0.
+// The general method (Haller 2003, section 3.1.2): an ambient pass, then for each light its shadows
+// and a pass that adds the light where there is none. Shadows are counts in the stencil buffer or a
+// shadow map, light by light as Light::shadow says (Kuehl, section 5, combined usage): each light
+// is added once, so no shadow darkens twice.
 #pragma once
 
 #include "pipeline/count_volumes.h"
 #include "pipeline/scene.h"
+#include "pipeline/shadow_map.h"
 #include "pipeline/topology.h"
 #include "raster/frame.h"
 
@@ -24,14 +27,17 @@ struct GeneralOptions {
   TopologyCache* topologies = nullptr;
   /// Memory of volumes kept between frames; null allocates it anew.
   VolumeMemory* volumes = nullptr;
+  /// Depth buffers of lights with a shadow map. Null only if no light has one.
+  MapMemory* maps = nullptr;
   /// Threads that make volumes, as in raster::ExecuteOptions.
   int threads = 0;
 };
 
 /// Records the frame of a wholly virtual scene: every object, whatever its role, is drawn and
 /// shadowed. Labels: "ambient pass", "shadow volumes" and "lit pass", the latter two with ": LIGHT"
-/// when there are several lights.
-/// Preconditions: all three targets; `scene` outlives the execution of the frame.
+/// when there are several lights, and "shadow map: LIGHT". A light whose map cannot serve it
+/// (plan_shadow_map) gets volumes.
+/// Preconditions: all three targets; `scene` and the maps outlive the execution of the frame.
 /// After execution: colour as described, depth of the scene; the stencil is used up (a pixel that
 /// was lit is marked, so that no light adds twice where two surfaces have one depth).
 raster::Frame record_general(const Scene& scene, const Camera& camera,

@@ -112,6 +112,8 @@ void draw_lit(raster::Frame& frame, const PlacedObject& object, const Scene& sce
     lit.material = part.material;
     lit.material.alpha = 1.0f;
     for (const Light& light : terms.lights) lit.lights.push_back(raster_light(light));
+    for (std::size_t l = 0; l < terms.shadow_maps.size(); ++l)
+      lit.lights[l].shadow_map = terms.shadow_maps[l];
     lit.scene_ambient = scene.ambient;
     lit.ambient = terms.ambient;
     lit.emission = terms.emission;

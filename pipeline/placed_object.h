@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,8 @@ raster::State surface_state();
 struct LightTerms {
   bool ambient = false, emission = false, diffuse = false, specular = false;
   std::span<const Light> lights = {};
+  /// One a light, or none at all: scales its diffuse and specular terms.
+  std::span<const std::optional<raster::DepthLookup>> shadow_maps = {};
 };
 
 /// Records the object's parts without colour.

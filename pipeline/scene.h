@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "pipeline/map_settings.h"
 #include "pipeline/mesh.h"
 
 namespace gnomon::pipeline {
@@ -25,6 +26,9 @@ struct Object {
   glm::mat4 world_from_model{1.0f};
   bool casts = true, receives = true;
 };
+
+/// What finds a light's shadows in the general method (pipeline/general_method.h).
+enum class ShadowMethod { volumes, map, none };
 
 struct Light {
   std::string name;
@@ -42,6 +46,8 @@ struct Light {
   int samples = 1;
   /// Attenuation of a point light with distance (constant, linear, quadratic).
   glm::vec3 attenuation{1.0f, 0.0f, 0.0f};
+  ShadowMethod shadow = ShadowMethod::volumes;
+  MapSettings map = {};
 };
 
 struct Scene {
