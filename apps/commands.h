@@ -17,6 +17,9 @@ void add_compare(CLI::App& program);
 /// gnomon golden --verify: do the golden frames have their bytes on this machine?
 void add_golden(CLI::App& program);
 
+/// gnomon mesh COMMAND: is a mesh fit for shadow volumes?
+void add_mesh(CLI::App& program);
+
 /// gnomon replay FRAME: a recorded frame executed anew.
 void add_replay(CLI::App& program);
 

@@ -37,12 +37,14 @@ int run(int argc, char** argv) {
       "Examples:\n"
       "  gnomon ar scene.toml --image photograph.png --out out --steps\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
+      "  gnomon mesh check model.glb\n"
       "  gnomon replay recorded.frame --out out\n"
       "  gnomon golden --verify\n"
       "  gnomon COMMAND --help");
   gnomon::apps::add_ar(program);
   gnomon::apps::add_compare(program);
   gnomon::apps::add_golden(program);
+  gnomon::apps::add_mesh(program);
   gnomon::apps::add_replay(program);
 
   try {

@@ -168,7 +168,8 @@ void build_planes(Topology& topology) {
 Topology build_topology(const Model& model) {
   const Soup soup = merge_parts(model);
   Topology topology;
-  const std::vector<std::uint32_t> vertex = weld(soup.positions, topology.positions);
+  topology.welded = weld(soup.positions, topology.positions);
+  const std::vector<std::uint32_t>& vertex = topology.welded;
   for (std::size_t i = 0; i + 2 < soup.indices.size(); i += 3) {
     const std::uint32_t a = vertex[soup.indices[i]], b = vertex[soup.indices[i + 1]],
                         c = vertex[soup.indices[i + 2]];
@@ -179,6 +180,7 @@ Topology build_topology(const Model& model) {
       continue;
     }
     topology.indices.insert(topology.indices.end(), {a, b, c});
+    topology.model_triangles.push_back(static_cast<std::uint32_t>(i / 3));
   }
   build_edges(topology);
   count_faults(topology);

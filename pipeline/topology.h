@@ -67,6 +67,10 @@ struct Topology {
   std::vector<glm::vec4> positions;
   /// Three a triangle.
   std::vector<std::uint32_t> indices;
+  /// One a triangle: its number in the model, counted through the parts from 0.
+  std::vector<std::uint32_t> model_triangles;
+  /// One a vertex of the model, counted the same way: the place of its position in `positions`.
+  std::vector<std::uint32_t> welded;
   std::vector<Edge> edges;
   std::vector<EdgeUse> uses;
   TopologyFaults faults;

@@ -1,0 +1,13 @@
+// The commands of `gnomon mesh`, each in a file of its own.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace gnomon::apps {
+
+/// gnomon mesh check M: what a mesh lacks of casting a classical shadow volume.
+void add_mesh_check(CLI::App& mesh);
+
+}  // namespace gnomon::apps
