@@ -15,6 +15,7 @@
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/gltf.h"
+#include "ar/model_file.h"
 #include "ar/toml_table.h"
 
 namespace gnomon::ar {
@@ -387,7 +388,7 @@ std::vector<std::shared_ptr<const pipeline::Model>> load_models(const SceneFile&
     const fs::path canonical = fs::canonical(object.model, error);
     auto& model = read[error ? object.model : canonical];
     if (!model) {
-      GltfModel file = read_gltf(object.model);
+      ModelFile file = load_model(object.model);
       if (notes != nullptr)
         for (const std::string& note : file.notes)
           notes->push_back(fmt::format("{}: {}", object.model.string(), note));
