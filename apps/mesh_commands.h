@@ -10,4 +10,7 @@ namespace gnomon::apps {
 /// gnomon mesh check M: what a mesh lacks of casting a classical shadow volume.
 void add_mesh_check(CLI::App& mesh);
 
+/// gnomon mesh repair M -o N: what makes it cast them.
+void add_mesh_repair(CLI::App& mesh);
+
 }  // namespace gnomon::apps

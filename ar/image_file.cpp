@@ -223,14 +223,14 @@ Image to_rgb(const Image& image) {
   return {image.width, image.height, 3, pick(image.pixels, image.channels, channels)};
 }
 
-void write_png(const std::filesystem::path& path, const Image& image) {
+std::vector<std::uint8_t> encode_png(const Image& image, std::string_view name) {
   raster::require(image.width >= 1 && image.height >= 1 &&
                       (image.channels == 1 || image.channels == 3 || image.channels == 4) &&
                       image.pixels.size() ==
                           static_cast<std::size_t>(image.width) * image.height * image.channels,
                   "a picture's pixels fit its size and its 1, 3 or 4 channels");
   const auto output = OIIO::ImageOutput::create("png");
-  if (!output) fail(path.string(), OIIO::geterror());
+  if (!output) fail(name, OIIO::geterror());
   ImageSpec spec(image.width, image.height, image.channels, TypeDesc::UINT8);
   spec.attribute("oiio:UnassociatedAlpha", 1);
   // Encoded in memory: OpenImageIO does not say when a disk is full.
@@ -238,7 +238,12 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   OIIO::Filesystem::IOVecOutput memory(bytes);
   if (!output->set_ioproxy(&memory) || !output->open("picture.png", spec) ||
       !output->write_image(TypeDesc::UINT8, image.pixels.data()) || !output->close())
-    fail(path.string(), fmt::format("cannot be written: {}", output->geterror()));
+    fail(name, fmt::format("cannot be written: {}", output->geterror()));
+  return bytes;
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+  const std::vector<std::uint8_t> bytes = encode_png(image, path.string());
   write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

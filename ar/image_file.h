@@ -50,6 +50,10 @@ FloatImage read_float_image(const std::filesystem::path& path);
 /// The picture as three channels: grey is repeated, alpha left out.
 Image to_rgb(const Image& image);
 
+/// The bytes of an 8-bit PNG file; `name` stands for the file in an InputError.
+/// Precondition: the picture is not empty and its pixels fit its size.
+std::vector<std::uint8_t> encode_png(const Image& image, std::string_view name);
+
 /// Writes an 8-bit PNG beside `path`, then renames it. Throws InputError if it cannot be written.
 /// Precondition: the picture is not empty and its pixels fit its size.
 void write_png(const std::filesystem::path& path, const Image& image);

@@ -1,0 +1,36 @@
+#include "apps/mesh_output.h"
+
+#include <fmt/format.h>
+
+#include "apps/output_folder.h"
+#include "ar/error.h"
+#include "ar/file.h"
+#include "ar/model_file.h"
+#include "ar/model_writer.h"
+
+namespace gnomon::apps {
+
+void check_mesh_output(const std::filesystem::path& input, const std::filesystem::path& output) {
+  ar::check_written_extension(output);
+  refuse_to_replace(input, output);
+}
+
+pipeline::MeshCheck write_checked(const std::filesystem::path& output, const pipeline::Model& model,
+                                  const pipeline::MeshCheckOptions& options) {
+  const pipeline::MeshCheck meant = pipeline::check_mesh(model, options);
+  ar::PendingFile file(output);
+  ar::write_model(file.temporary(), model);
+  pipeline::MeshCheck written =
+      pipeline::check_mesh(ar::load_model(file.temporary()).model, options);
+  if (written.open_edges.count > meant.open_edges.count ||
+      written.non_manifold_edges.count > meant.non_manifold_edges.count ||
+      written.misoriented_edges.count > meant.misoriented_edges.count)
+    throw ar::InputError(fmt::format(
+        "{}: cannot be written: this format rounds positions so that edges part ({}); .glb does "
+        "not",
+        ar::one_line(output.string()), pipeline::describe(written)));
+  file.commit();
+  return written;
+}
+
+}  // namespace gnomon::apps
