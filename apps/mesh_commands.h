@@ -13,4 +13,7 @@ void add_mesh_check(CLI::App& mesh);
 /// gnomon mesh repair M -o N: what makes it cast them.
 void add_mesh_repair(CLI::App& mesh);
 
+/// gnomon mesh simplify M --error E -o N: fewer triangles within an error.
+void add_mesh_simplify(CLI::App& mesh);
+
 }  // namespace gnomon::apps
