@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "apps/output_folder.h"
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/model_file.h"
@@ -12,7 +11,10 @@ namespace gnomon::apps {
 
 void check_mesh_output(const std::filesystem::path& input, const std::filesystem::path& output) {
   ar::check_written_extension(output);
-  refuse_to_replace(input, output);
+  std::error_code error;
+  if (std::filesystem::equivalent(input, output, error))
+    throw ar::InputError(
+        fmt::format("{}: is the input itself; name another file", ar::one_line(output.string())));
 }
 
 pipeline::MeshCheck write_checked(const std::filesystem::path& output, const pipeline::Model& model,

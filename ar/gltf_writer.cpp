@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <fstream>
 #include <glm/common.hpp>
 #include <map>
 #include <span>
@@ -177,7 +177,11 @@ class Writer {
 void write_gltf(const std::filesystem::path& path, const pipeline::Model& model, bool binary) {
   tinygltf::Model gltf = Writer(path).take(model);
   tinygltf::TinyGLTF writer;
-  if (!writer.WriteGltfSceneToFile(&gltf, path.string(), false, true, false, binary))
+  // tinygltf does not say when a file cannot be opened or a disk is full: the stream does.
+  std::ofstream out(path, std::ios::binary);
+  const bool written = writer.WriteGltfSceneToStream(&gltf, out, false, binary);
+  out.close();
+  if (!written || !out)
     throw InputError(fmt::format("{}: cannot be written", one_line(path.string())));
 }
 

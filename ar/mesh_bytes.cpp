@@ -7,11 +7,12 @@
 #include <cctype>
 #include <charconv>
 #include <map>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "ar/error.h"
 #include "ar/file.h"
+#include "ar/ply_bytes.h"
 
 namespace gnomon::ar {
 
@@ -61,6 +62,16 @@ std::uint64_t count_of(const fs::path& path, std::string_view word, std::string_
   return value;
 }
 
+void require_number(const fs::path& path, std::string_view word, std::string_view what,
+                    std::uint64_t number) {
+  std::string_view digits = word;
+  if (digits.starts_with('+')) digits.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+    fail(path, fmt::format("{} {}: '{}' is no number", what, number, word.substr(0, 40)));
+}
+
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
 bool is_binary_stl(Bytes bytes) {
@@ -91,86 +102,53 @@ void check_stl(Bytes bytes, const fs::path& path) {
                          triangles, kStlHeader + triangles * kStlTriangle, bytes.size()));
 }
 
-void check_off(Bytes bytes, const fs::path& path) {
-  std::string_view text = text_of(bytes);
-  std::string_view word = next_word(text);
-  if (!word.ends_with("OFF")) fail(path, "is no OFF file: it does not begin with OFF");
-  if (word != "OFF")
-    fail(path, fmt::format("a file of the kind {}; plain OFF is read", word.substr(0, 8)));
-  const auto next_value = [&] {
-    while ((word = next_word(text)).starts_with('#')) {
-      const std::size_t line = text.find('\n');
-      text.remove_prefix(line == std::string_view::npos ? text.size() : line);
-    }
-    return word;
-  };
-  next_value();
-  if (word == "BINARY") fail(path, "a binary OFF file; text is read");
-  const std::uint64_t vertices = count_of(path, word, "OFF: number of vertices");
-  const std::uint64_t faces = count_of(path, next_value(), "OFF: number of faces");
-  // A vertex is three numbers, a face at least its count, in digits and spaces.
-  if (vertices > text.size() / 6 || faces > text.size() / 2)
-    fail(path, fmt::format("{} vertices and {} faces do not fit into the {} bytes that follow",
-                           vertices, faces, text.size()));
-}
+/// The lines of a text that hold something, without comments.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : text_(text) {}
 
-struct PlyElement {
-  std::string name;
-  std::uint64_t count = 0;
-  /// Least bytes of one in a binary file, least values in a text.
-  std::uint64_t bytes = 0, values = 0;
+  /// The next one; nothing at the end.
+  std::optional<std::string_view> next() {
+    while (!text_.empty()) {
+      const std::size_t end = std::min(text_.find('\n'), text_.size());
+      std::string_view line = text_.substr(0, end);
+      text_.remove_prefix(std::min(end + 1, text_.size()));
+      line = line.substr(0, line.find('#'));
+      std::string_view rest = line;
+      if (!next_word(rest).empty()) return line;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::string_view text_;
 };
 
-void check_ply(Bytes bytes, const fs::path& path) {
-  static const std::map<std::string, int> kSizes{
-      {"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},  {"short", 2}, {"ushort", 2},
-      {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},   {"int32", 4}, {"uint32", 4},
-      {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
-  const std::string_view text = text_of(bytes);
-  std::vector<PlyElement> elements;
-  std::string format;
-  std::size_t at = 0;
-  bool ended = false;
-  while (!ended) {
-    const std::size_t end = text.find('\n', at);
-    if (end == std::string_view::npos) fail(path, "PLY: the header has no end_header");
-    std::string_view line = text.substr(at, end - at);
-    at = end + 1;
-    const std::string shown(line.substr(0, 60));
-    const std::string_view keyword = next_word(line);
-    const auto size_of = [&](std::string_view type) {
-      const auto size = kSizes.find(std::string(type));
-      if (size == kSizes.end()) fail(path, fmt::format("PLY: \"{}\": unknown type", shown));
-      return static_cast<std::uint64_t>(size->second);
-    };
-    if (keyword == "end_header") {
-      ended = true;
-    } else if (keyword == "format") {
-      format = next_word(line);
-    } else if (keyword == "element") {
-      PlyElement element{std::string(next_word(line))};
-      element.count = count_of(path, next_word(line), fmt::format("PLY: \"{}\"", shown));
-      elements.push_back(element);
-    } else if (keyword == "property") {
-      if (elements.empty()) fail(path, fmt::format("PLY: \"{}\": before any element", shown));
-      const std::string_view type = next_word(line);
-      // A list may be empty: then it is its count alone.
-      elements.back().bytes += size_of(type == "list" ? next_word(line) : type);
-      elements.back().values += 1;
-    }
+void check_off(Bytes bytes, const fs::path& path) {
+  std::string_view text = text_of(bytes);
+  const std::string_view mark = next_word(text);
+  if (!mark.ends_with("OFF")) fail(path, "is no OFF file: it does not begin with OFF");
+  if (mark != "OFF")
+    fail(path, fmt::format("a file of the kind {}; plain OFF is read", mark.substr(0, 8)));
+  Lines lines(text);
+  std::string_view counts = lines.next().value_or("");
+  const std::uint64_t vertices = count_of(path, next_word(counts), "OFF: number of vertices");
+  const std::uint64_t faces = count_of(path, next_word(counts), "OFF: number of faces");
+  for (std::uint64_t v = 0; v < vertices; ++v) {
+    std::optional<std::string_view> line = lines.next();
+    if (!line) fail(path, fmt::format("OFF: {} vertices are announced, {} are there", vertices, v));
+    for (int c = 0; c < 3; ++c) require_number(path, next_word(*line), "OFF: vertex", v);
   }
-  if (format != "ascii" && format != "binary_little_endian" && format != "binary_big_endian")
-    fail(path, fmt::format("PLY: format '{}' is not read", format.substr(0, 40)));
-  std::uint64_t left = bytes.size() - at;
-  for (const PlyElement& element : elements) {
-    // A value in a text is a digit and a space; the last may lack the space.
-    const std::uint64_t least = format == "ascii" ? 2 * element.values : element.bytes;
-    if (least == 0 && element.count > 0)
-      fail(path, fmt::format("PLY: element {} has no property", element.name.substr(0, 40)));
-    if (element.count > 0 && element.count > (left + 1) / least)
-      fail(path, fmt::format("PLY: {} of element {} do not fit into the {} bytes that are left",
-                             element.count, element.name.substr(0, 40), left));
-    left -= std::min(left, element.count * least);
+  for (std::uint64_t f = 0; f < faces; ++f) {
+    std::optional<std::string_view> line = lines.next();
+    if (!line) fail(path, fmt::format("OFF: {} faces are announced, {} are there", faces, f));
+    const std::uint64_t corners = count_of(path, next_word(*line), fmt::format("OFF: face {}", f));
+    for (std::uint64_t k = 0; k < corners; ++k)
+      if (const std::uint64_t index =
+              count_of(path, next_word(*line), fmt::format("OFF: face {}", f));
+          index >= vertices)
+        fail(path, fmt::format("OFF: face {}: index {} is not below the {} vertices", f, index,
+                               vertices));
   }
 }
 
@@ -219,7 +197,7 @@ void check_mesh_bytes(MeshFormat format, Bytes bytes, const fs::path& path) {
       return check_off(bytes, path);
     case MeshFormat::ply:
       if (lower(text_of(bytes, 3)) != "ply") fail(path, "is no PLY file");
-      return check_ply(bytes, path);
+      return check_ply_bytes(bytes, path);
     case MeshFormat::three_ds:
       if (bytes.size() < 6 || bytes[0] != 0x4d || bytes[1] != 0x4d) fail(path, "is no 3DS file");
       return check_3ds(bytes, path, 0, bytes.size(), 0);
