@@ -9,8 +9,8 @@
 
 namespace gnomon::apps {
 
-/// "closed", or in one word what it is not: "open", "non-manifold", "misoriented", "non-finite",
-/// "empty". The first that applies, from the end of this list.
+/// "closed", or in one word what it is not: "open", "non-manifold", "misoriented", "empty",
+/// "non-finite"; where several apply, the last of them.
 std::string verdict(const pipeline::MeshCheck& check);
 
 /// Counts and first places, a line each; what was not found is left out.

@@ -17,7 +17,9 @@
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -311,6 +313,14 @@ void keep_one_reader(Assimp::Importer& importer, const std::string& extension) {
   for (Assimp::BaseImporter* other : others) importer.UnregisterLoader(other);
 }
 
+/// assimp's reason, in our words where it means that the file holds no mesh.
+std::string refusal_of(std::string_view reason) {
+  for (const std::string_view words :
+       {"mNumMeshes is 0", "contains no vertices", "Unable to extract mesh data"})
+    if (reason.find(words) != std::string_view::npos) return "no triangle in the file";
+  return fmt::format("assimp: {}", reason);
+}
+
 }  // namespace
 
 ModelFile read_with_assimp(MeshFormat format, std::span<const std::uint8_t> bytes,
@@ -323,7 +333,7 @@ ModelFile read_with_assimp(MeshFormat format, std::span<const std::uint8_t> byte
     importer.SetIOHandler(new OneFolder(name, bytes, path.parent_path()));
     const aiScene* scene =
         importer.ReadFile(name, aiProcess_ValidateDataStructure | aiProcess_Triangulate);
-    if (scene == nullptr) fail(path, importer.GetErrorString());
+    if (scene == nullptr) fail(path, refusal_of(importer.GetErrorString()));
     return Reader(*scene, path).read();
   } catch (const InputError&) {
     throw;

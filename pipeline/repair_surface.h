@@ -69,7 +69,7 @@ struct SurfaceEdges {
 };
 SurfaceEdges edges_of(const Surface& surface);
 
-/// The vertex after half-edge's k = (half + 1) % 3 does not wrap across triangles.
+/// The half-edge that follows in the same triangle.
 inline std::uint32_t next_in_triangle(std::uint32_t half) {
   return half - half % 3 + (half + 1) % 3;
 }
