@@ -335,6 +335,10 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
   state.polygon_offset = plan.offset;
   for (const PlacedObject& object : objects) {
     if (!object.object->casts) continue;
+    // What of a closed body is turned from the light hides the same points, and never the lit side.
+    // The map mirrors (LightView), so that side is the one that is in front here.
+    state.cull =
+        object.topology->faults.closed_manifold() ? raster::Cull::back : raster::Cull::none;
     PlacedObject seen = object;
     seen.clip_from_model = plan.clip_from_world * object.object->world_from_model;
     draw_depth(frame, seen, state);
