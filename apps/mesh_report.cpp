@@ -1,6 +1,7 @@
 #include "apps/mesh_report.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <array>
 

@@ -1,6 +1,7 @@
 #include "ar/ply_bytes.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cctype>
 #include <charconv>
@@ -21,7 +22,7 @@ namespace {
 /// A type's bytes, and whether it can be a list's count.
 struct Type {
   std::uint64_t size = 0;
-  bool whole = false;
+  bool whole = false, is_signed = false;
 };
 
 /// A value, or a list of them after its count.
@@ -83,11 +84,11 @@ class PlyWalk {
 
   Type type_of(std::string_view word, std::string_view line) const {
     static const std::map<std::string, Type, std::less<>> kTypes{
-        {"char", {1, true}},    {"uchar", {1, true}},    {"int8", {1, true}},
-        {"uint8", {1, true}},   {"short", {2, true}},    {"ushort", {2, true}},
-        {"int16", {2, true}},   {"uint16", {2, true}},   {"int", {4, true}},
-        {"uint", {4, true}},    {"int32", {4, true}},    {"uint32", {4, true}},
-        {"float", {4, false}},  {"float32", {4, false}}, {"double", {8, false}},
+        {"char", {1, true, true}},  {"uchar", {1, true}},       {"int8", {1, true, true}},
+        {"uint8", {1, true}},       {"short", {2, true, true}}, {"ushort", {2, true}},
+        {"int16", {2, true, true}}, {"uint16", {2, true}},      {"int", {4, true, true}},
+        {"uint", {4, true}},        {"int32", {4, true, true}}, {"uint32", {4, true}},
+        {"float", {4, false}},      {"float32", {4, false}},    {"double", {8, false}},
         {"float64", {8, false}}};
     const auto known = kTypes.find(word);
     if (known == kTypes.end()) fail(fmt::format("\"{}\": unknown type", line.substr(0, 60)));
@@ -166,6 +167,8 @@ class PlyWalk {
           const std::size_t from = format_ == "binary_big_endian" ? i : count.size() - 1 - i;
           values = values << 8 | static_cast<unsigned char>(count[from]);
         }
+        if (property.count.is_signed && values >> (8 * property.count.size - 1) != 0)
+          fail(fmt::format("{} {}: a list's count is negative", element.name, index));
       }
       take(values * property.value.size);
     }

@@ -35,11 +35,11 @@ struct GeneralOptions {
 
 /// Records the frame of a wholly virtual scene: every object, whatever its role, is drawn and
 /// shadowed. Labels: "ambient pass", "shadow volumes" and "lit pass", the latter two with ": LIGHT"
-/// when there are several lights, and "shadow map: LIGHT". A light whose map cannot serve it
-/// (plan_shadow_map) gets volumes.
-/// Preconditions: all three targets; `scene` and the maps outlive the execution of the frame.
-/// After execution: colour as described, depth of the scene; the stencil is used up (a pixel that
-/// was lit is marked, so that no light adds twice where two surfaces have one depth).
+/// when there are several lights, "shadow map: LIGHT", and "no volumes" where a light's stencil is
+/// only cleared. A light whose map cannot serve it (plan_shadow_map) gets volumes. Preconditions:
+/// all three targets; `scene` and the maps outlive the execution of the frame. After execution:
+/// colour as described, depth of the scene; the stencil is used up (a pixel that was lit is marked,
+/// so that no light adds twice where two surfaces have one depth).
 raster::Frame record_general(const Scene& scene, const Camera& camera,
                              const raster::Targets& targets, const GeneralOptions& options = {});
 

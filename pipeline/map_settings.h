@@ -15,9 +15,9 @@ namespace gnomon::pipeline {
 struct MapSettings {
   /// Texels a side.
   std::optional<int> size;
-  /// A point light's whole angle of view about the casters' middle, in degrees. By itself the map
-  /// gets the rectangle that casters and receivers need.
-  std::optional<float> fov_deg;
+  /// Tangent of half a point light's angle of view about the casters' middle (1 is 90 degrees). By
+  /// itself the map gets the rectangle that casters and receivers need.
+  std::optional<float> fov_tangent;
   /// Near and far plane, in metres from the light; for a light at infinity, along its direction
   /// from the casters' middle.
   std::optional<glm::vec2> near_far_m;

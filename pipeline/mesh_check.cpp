@@ -22,7 +22,7 @@ bool finite(const glm::vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// The box around all finite positions; low above high without one.
+/// The box around the finite positions that triangles use; low above high without one.
 struct Box {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};
@@ -31,7 +31,8 @@ struct Box {
 Box box_of(const Model& model) {
   Box box;
   for (const Part& part : model.parts) {
-    for (const glm::vec4& position : part.mesh.positions) {
+    for (const std::uint32_t index : part.mesh.indices) {
+      const glm::vec4& position = part.mesh.positions[index];
       if (!finite(glm::vec3(position))) continue;
       box.low = glm::min(box.low, glm::dvec3(position));
       box.high = glm::max(box.high, glm::dvec3(position));
@@ -48,7 +49,8 @@ double tolerance_of(const Box& box, double tolerance_m) {
   if (!(box.low.x <= box.high.x)) return std::max(tolerance_m, 0.0);
   const glm::dvec3 far = glm::max(glm::abs(box.low), glm::abs(box.high));
   const auto largest = static_cast<float>(std::max({far.x, far.y, far.z}));
-  const double step = std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest;
+  // Downwards, where there always is one.
+  const double step = largest - std::nextafter(largest, 0.0f);
   return std::max(tolerance_m < 0.0 ? kDefaultRelativeTolerance * diagonal_of(box) : tolerance_m,
                   32.0 * step);
 }

@@ -75,6 +75,7 @@ void look_at_pairs(void* user, RTCCollision* pairs, unsigned int count) {
     if (s == t || search.share_a_vertex(s, t)) continue;
     if (!meet(search.triangle(s), search.triangle(t))) continue;
     const std::lock_guard lock(search.mutex);
+    if (search.found.size() == search.found.capacity()) return;
     search.found.emplace_back(s, t);
   }
 }
@@ -83,6 +84,8 @@ void look_at_pairs(void* user, RTCCollision* pairs, unsigned int count) {
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const Topology& topology) {
   Search search{.topology = topology};
+  // All there will be: Embree's callback cannot throw.
+  search.found.reserve(kMostIntersections);
   const RTCDevice device = rtcNewDevice(nullptr);
   const RTCScene scene = rtcNewScene(device);
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);

@@ -2,6 +2,7 @@
 // boxes; the decision is rounded (signs of double determinants), so it informs and decides nothing.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "pipeline/topology.h"
 
 namespace gnomon::pipeline {
+
+/// More pairs than these are not kept: which, is not defined then.
+inline constexpr std::size_t kMostIntersections = 1'000'000;
 
 /// Pairs (smaller first, ascending) of triangles of the topology that share no vertex and of which
 /// one's edge meets the other. Triangles in one plane are no pair. Time grows with the pairs whose

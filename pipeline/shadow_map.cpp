@@ -1,8 +1,10 @@
-// Frustum. A shadow on a visible receiver comes from a caster that lies between it and the light,
-// so both project to one place of the map: the rectangle that both the casters' corners and the
-// receivers' visible corners span holds it. Near and far are the casters' own: a receiver beyond
-// the far plane is compared as if it lay on it, behind every caster; one before the near plane as
-// if it lay on that, before every caster.
+// Frustum. Drawn is what lies before the eye and inside the sides of its view: depth clamp keeps
+// what is nearer than the near plane. A shadow on a visible receiver comes from a caster that lies
+// between it and the light, so both project to one place of the map: the rectangle that both the
+// casters' corners and the receivers' visible corners span holds it. Near and far are the casters'
+// own: a receiver beyond the far plane is compared as if it lay behind it, one before the near
+// plane as if it lay on that. Casters get depths up to kDepthFar only, where clamping leaves one
+// whose offset takes it farther: still before what a receiver beyond is compared with.
 //
 // Size. At a point whose pixel is p metres wide on a plane across the view, and at which one unit
 // of the map's rectangle is s metres, the map needs extent * s / p texels for one a pixel. The
@@ -29,15 +31,18 @@
 #include <glm/vec3.hpp>
 
 #include "pipeline/basis.h"
+#include "pipeline/silhouette.h"
 #include "raster/check.h"
+#include "raster/clip.h"
 
 namespace gnomon::pipeline {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 /// Tangent of half the angle of view that one map serves, 80 degrees.
 constexpr double kWidest = 5.67128181961771;
+/// The casters' part of the map's depths. A power of two less than 1, so that float32 has it.
+constexpr double kDepthFar = 1.0 - 1.0 / 1024.0;
 /// A map that is found has so many texels at least, and a multiple of them.
 constexpr int kSizeStep = 64;
 
@@ -61,18 +66,25 @@ void cut(Polygon& polygon, const HalfSpace& half, Polygon& scratch) {
   polygon.swap(scratch);
 }
 
-std::array<HalfSpace, 6> frustum_of(const glm::mat4& clip_from_world) {
-  const glm::dmat4 rows = glm::transpose(glm::dmat4(clip_from_world));
-  std::array<HalfSpace, 6> halves;
-  for (std::size_t i = 0; i < 6; ++i) {
+/// What lies before the eye and between the sides of its view.
+std::array<HalfSpace, 5> view_of(const Camera& camera) {
+  const glm::dmat4 rows = glm::transpose(glm::dmat4(camera.clip_from_world));
+  std::array<HalfSpace, 5> halves;
+  halves[0] = {glm::dvec3(rows[3]), raster::kMinW - rows[3].w};
+  for (std::size_t i = 0; i < 4; ++i) {
     const double sign = i % 2 == 0 ? 1.0 : -1.0;
     const glm::dvec4 plane = rows[3] + sign * rows[static_cast<int>(i / 2)];
-    halves[i] = {glm::dvec3(plane), -plane.w};
+    halves[i + 1] = {glm::dvec3(plane), -plane.w};
   }
   return halves;
 }
 
-/// Calls body(a, b, c) with the world corners of each triangle of an object.
+bool finite(const glm::dvec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+/// Calls body(a, b, c) with the world corners of each triangle of an object whose corners are
+/// finite.
 template <class Body>
 void for_each_triangle(const Object& object, Body body) {
   const glm::dmat4 world(object.world_from_model);
@@ -82,7 +94,8 @@ void for_each_triangle(const Object& object, Body body) {
       const auto corner = [&](std::size_t k) {
         return glm::dvec3(world * glm::dvec4(mesh.positions[mesh.indices[i + k]]));
       };
-      body(corner(0), corner(1), corner(2));
+      const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
+      if (finite(a) && finite(b) && finite(c)) body(a, b, c);
     }
   }
 }
@@ -181,14 +194,14 @@ CasterBounds bounds_of_casters(const Scene& scene) {
 
 /// The visible parts of everything that receives.
 std::vector<Polygon> visible_receivers(const Scene& scene, const Camera& camera) {
-  const std::array<HalfSpace, 6> frustum = frustum_of(camera.clip_from_world);
+  const std::array<HalfSpace, 5> view = view_of(camera);
   std::vector<Polygon> parts;
   Polygon scratch;
   for (const Object& object : scene.objects) {
     if (!object.receives) continue;
     for_each_triangle(object, [&](const auto&... corners) {
       Polygon polygon{corners...};
-      for (const HalfSpace& half : frustum) {
+      for (const HalfSpace& half : view) {
         if (polygon.empty()) return;
         cut(polygon, half, scratch);
       }
@@ -229,6 +242,8 @@ int size_for(const LightView& view, const Rectangle& rectangle, std::vector<Poly
       wanted = std::max(wanted, extent * view.metres(view.local(p)) / pixel_m);
     }
   }
+  // The margin takes four (plan_shadow_map).
+  wanted += 4.0;
   if (!(wanted < largest)) return largest;
   return std::min(largest, (static_cast<int>(wanted) / kSizeStep + 1) * kSizeStep);
 }
@@ -243,9 +258,12 @@ void require_settings(const MapSettings& settings) {
   const auto is_size = [](int size) { return size >= 1 && size <= raster::kMaxTargetSize; };
   raster::require(!settings.size || is_size(*settings.size), "a map has 1 to 16384 texels a side");
   raster::require(is_size(settings.largest_size), "a map has 1 to 16384 texels a side");
-  raster::require(!settings.fov_deg || (*settings.fov_deg > 0.0f && *settings.fov_deg < 180.0f),
-                  "a map's angle of view lies between 0 and 180 degrees");
-  raster::require(!settings.near_far_m || settings.near_far_m->x < settings.near_far_m->y,
+  raster::require(!settings.fov_tangent ||
+                      (*settings.fov_tangent > 0.0f && std::isfinite(*settings.fov_tangent)),
+                  "the tangent of a map's angle of view is positive");
+  raster::require(!settings.near_far_m || (settings.near_far_m->x < settings.near_far_m->y &&
+                                           std::isfinite(settings.near_far_m->x) &&
+                                           std::isfinite(settings.near_far_m->y)),
                   "a map's near plane lies before the far one");
 }
 
@@ -254,6 +272,8 @@ void require_settings(const MapSettings& settings) {
 std::optional<MapPlan> plan_shadow_map(const Scene& scene, const Light& light, const Camera& camera,
                                        const MapSettings& settings) {
   require_settings(settings);
+  // The same rules as for volumes.
+  (void)light_in_model(light.position, glm::mat4(1.0f));
   const CasterBounds casters = bounds_of_casters(scene);
   if (casters.low.x > casters.high.x) return MapPlan{.empty = true};
   if (light.position.w != 0.0f && casters.middle() == glm::dvec3(light.position)) return {};
@@ -286,21 +306,24 @@ std::optional<MapPlan> plan_shadow_map(const Scene& scene, const Light& light, c
   }
   Rectangle rectangle{glm::max(of_casters.low, of_receivers.low),
                       glm::min(of_casters.high, of_receivers.high)};
-  if (settings.fov_deg && view.is_point()) {
-    const double side = std::tan(static_cast<double>(*settings.fov_deg) * kPi / 360.0);
-    rectangle = {glm::dvec2(-side), glm::dvec2(side)};
+  if (settings.fov_tangent && view.is_point()) {
+    const glm::dvec2 side(static_cast<double>(*settings.fov_tangent));
+    rectangle = {-side, side};
   }
   if (rectangle.empty()) return MapPlan{.empty = true};
 
   MapPlan plan;
   plan.size = settings.size ? *settings.size
                             : size_for(view, rectangle, receivers, camera, settings.largest_size);
-  if (!settings.fov_deg) {
+  if (!settings.fov_tangent) {
     // So that a lookup at the edge finds texels on both sides.
     const glm::dvec2 margin = rectangle.extent() * (2.0 / plan.size);
     rectangle = {rectangle.low - margin, rectangle.high + margin};
   }
-  const double slack = 1e-3 * (far - near) + 1e-4 * std::abs(far);
+  // A caster may be flat and lie across the light: the range is never less than a thousandth of the
+  // scene's size, so that rounding stays a small part of it.
+  const double size_m = largest_coordinate(casters, light);
+  const double slack = 1e-3 * (far - near + size_m);
   near = view.is_point() ? std::max(near - slack, 0.5 * near) : near - slack;
   far += slack;
   if (settings.near_far_m) {
@@ -310,7 +333,7 @@ std::optional<MapPlan> plan_shadow_map(const Scene& scene, const Light& light, c
   }
   plan.clip_from_world = view.clip_from_world(rectangle, near, far);
   const double one = settings.format == raster::DepthFormat::d24 ? 0xffffff : 0xffff;
-  const double rounding = 0x1p-21 * largest_coordinate(casters, light);
+  const double rounding = 0x1p-21 * size_m;
   plan.offset = settings.offset.value_or(
       raster::PolygonOffset{settings.filter == raster::Filter::nearest ? 1.0f : 2.0f,
                             static_cast<float>(2.0 + rounding * view.depth_rate(near, far) * one)});
@@ -333,6 +356,7 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
   raster::State state = surface_state();
   state.depth = raster::DepthState{};
   state.polygon_offset = plan.offset;
+  state.depth_range.far = static_cast<float>(kDepthFar);
   for (const PlacedObject& object : objects) {
     if (!object.object->casts) continue;
     // What of a closed body is turned from the light hides the same points, and never the lit side.
@@ -343,9 +367,11 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
     seen.clip_from_model = plan.clip_from_world * object.object->world_from_model;
     draw_depth(frame, seen, state);
   }
-  // From [-1, 1] to [0, 1].
+  // From [-1, 1] to [0, 1], and to [0, kDepthFar].
+  const auto half_depth = static_cast<float>(0.5 * kDepthFar);
   glm::mat4 to_map(0.5f);
-  to_map[3] = {0.5f, 0.5f, 0.5f, 1.0f};
+  to_map[2][2] = half_depth;
+  to_map[3] = {0.5f, 0.5f, half_depth, 1.0f};
   return {.map = &map, .map_from_position = to_map * plan.clip_from_world, .filter = filter};
 }
 

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -30,13 +31,15 @@ struct MapPlan {
 };
 
 /// Finds what the settings leave open. Absent: one map cannot serve the light (the casters span
-/// more than 160 degrees of a point light's view, or a visible receiver lies behind it). Errors: a
-/// size out of 1 to 16384, an angle out of 0 to 180 degrees, a near plane that is not between 0 and
-/// the far one (std::invalid_argument, as raster::require).
+/// more than 160 degrees of a point light's view, or a visible receiver lies behind it).
+/// Errors (std::invalid_argument, as raster::require): a size out of 1 to 16384, a tangent that is
+/// not positive, a near plane that is not between 0 and the far one, a light as in light_in_model.
+/// Preconditions: every object has a model whose indices name its positions.
 std::optional<MapPlan> plan_shadow_map(const Scene& scene, const Light& light, const Camera& camera,
                                        const MapSettings& settings);
 
-/// Depth buffers of maps, kept between frames.
+/// Depth buffers of maps, kept between frames; of one frame at a time: to record the next one may
+/// free what an earlier one draws into.
 class MapMemory {
  public:
   /// The number-th map, of this size and format, of any content.

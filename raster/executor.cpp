@@ -91,6 +91,7 @@ class Run {
 
 void run_phases(std::span<const Phase> phases, int threads) {
   require(phases.size() <= kMostPhases, "a run has at most three phases");
+  require(threads >= 0, "a number of threads is not negative");
   std::size_t most = 0;
   for (const Phase& phase : phases) most = std::max(most, phase.count);
   if (threads == 0) threads = machine_threads();

@@ -23,15 +23,19 @@ struct Phase {
 void run_phases(std::span<const Phase> phases, int threads);
 
 /// Calls body(first, last) for consecutive chunks of [0, count), in any order.
+/// Precondition: chunk is positive.
 void for_each_chunk(std::size_t count, std::size_t chunk, int threads,
                     const std::function<void(std::size_t first, std::size_t last)>& body);
 
-/// What an executor (oneTBB, C++ threads, serial) has to give.
+// What an executor (oneTBB, C++ threads, serial) has to give:
+
 /// How many threads the machine runs at a time.
 int machine_threads();
-/// Calls worker(0) on the calling thread and, at the same time or later or not at all, worker(1) to
-/// worker(count - 1) on others; returns when all calls have. Precondition: worker does not throw
-/// and is right however many of its calls are made.
+/// Calls worker(number) up to `count` times, on the calling thread and, at the same time or later
+/// or not at all, on others; returns when all calls have. `number`, from 0 to count - 1, is the
+/// same for a thread in one call and the next wherever the executor can have it so. Preconditions:
+/// count is positive; worker does not throw and is right however many of its calls are made, and
+/// with whatever numbers.
 void run_on_threads(int count, const std::function<void(int number)>& worker);
 
 }  // namespace gnomon::raster

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -50,9 +51,10 @@ void run_on_threads(int count, const std::function<void(int number)>& worker) {
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<int>(0, count, 1),
-        [&](const tbb::blocked_range<int>& range) {
+        [&](const tbb::blocked_range<int>&) {
           fork.acquire();
-          worker(range.begin());
+          // A place in the arena belongs to a thread as long as it stays.
+          worker(std::clamp(tbb::this_task_arena::current_thread_index(), 0, count - 1));
           join.release();
         },
         tbb::simple_partitioner());

@@ -51,7 +51,7 @@ struct TileEdges {
   int count = 0;
   std::int32_t value[3];
   std::int32_t step_x[3], step_y[3];
-  /// The rows of the tile outside which no pixel is inside.
+  /// The rows of the tile that are asked for; of others cover_pixels may say anything.
   int first_row = 0, end_row = 64;
 };
 
@@ -133,14 +133,14 @@ struct LitTerms {
   bool world_matters;
   float scene_ambient[3], eye_world[3];
   float world_from_model[4][4], world_from_model_normal[3][3];
-  const LitLight* lights;
-  int light_count;
 };
 
 /// A triangle's colours over a tile: lit, or `flat_color` times the mesh's colours.
 struct TileShading {
   TileWeights weights;
   const LitTerms* lit;
+  const LitLight* lights;
+  int light_count;
   float flat_color[4];
   /// Of the mesh triangle's three vertices.
   float normals[3][3], positions[3][4], colors[3][4];
@@ -170,7 +170,7 @@ struct Kernels {
 
   /// The same where nothing but the depth test decides, depth is only read, and the one stencil
   /// operation that is not `keep` adds `delta` modulo 256: to pixels that pass the depth test, or
-  /// to those that fail it. `covered` stays.
+  /// to those that fail it. `covered` has some pixel in each block, and stays.
   void (*count_blocks)(CompareFunc func, bool on_pass, std::uint8_t delta,
                        const TestedBlocks& tested, const PixelMask* covered) noexcept;
 

@@ -1,5 +1,5 @@
 // Which of a mesh's triangles reach the tiles: those that face the right way and whose box, inside
-// the draw's, has a pixel; where it has four or fewer, one whose centre is covered. And the depth
+// the draw's, has a pixel; where it has at most 2x2, one whose centre is covered. And the depth
 // planes of those that are small and not steep.
 #pragma once
 

@@ -190,7 +190,7 @@ HWY_INLINE Vector3 lit_color(const TileShading& s, VF32 p0, VF32 p1, VF32 p2, co
   Vector3 world{zero, zero, zero};
   if (lit.world_matters) world = world_position(s, p0, p1, p2);
   LightSums sums{set(lit.scene_ambient), {zero, zero, zero}, {zero, zero, zero}};
-  for (int i = 0; i < lit.light_count; ++i) add_light(lit.lights[i], lit, normal, world, sums);
+  for (int i = 0; i < s.light_count; ++i) add_light(s.lights[i], lit, normal, world, sums);
   Vector3 color{zero, zero, zero};
   // Without colours the base is 1.
   const auto tinted = [&](const Vector3& v) HWY_ATTR { return s.has_colors ? mul(v, base) : v; };
@@ -205,6 +205,12 @@ HWY_INLINE Vector3 lit_color(const TileShading& s, VF32 p0, VF32 p1, VF32 p2, co
 void shade_block(const TileShading& s, std::size_t b, PixelMask mask, float* colors) noexcept {
   const DF32 d;
   alignas(64) float planes[3][kPixels];
+  if (hn::Lanes(d) > kWidth) {
+    // A vector may have a row without a pixel, whose weights are not found.
+    for (float& weight : planes[0]) weight = 0.0f;
+    for (float& weight : planes[1]) weight = 0.0f;
+    for (float& weight : planes[2]) weight = 0.0f;
+  }
   block_weights(s.weights, b, mask, planes);
   const VectorRange range = vectors_of(d, mask);
   for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {

@@ -94,8 +94,6 @@ std::optional<DrawShading> make_draw_shading(const Draw& draw, std::pmr::memory_
     shading.lights.push_back(make_light(light));
   }
   shading.lit = make_lit(lit);
-  shading.lit->lights = shading.lights.data();
-  shading.lit->light_count = static_cast<int>(shading.lights.size());
   shading.two_sided = lit.two_sided;
   return shading;
 }
@@ -122,6 +120,8 @@ TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
         weights.piece[i][static_cast<std::size_t>(v)] = source.pieces[triangle.piece].weights[i][v];
   }
   out.lit = shading.lit ? &*shading.lit : nullptr;
+  out.lights = shading.lights.data();
+  out.light_count = static_cast<int>(shading.lights.size());
   if (const Flat* flat = std::get_if<Flat>(&draw.shading)) copy(flat->color, out.flat_color);
   const MeshView& mesh = draw.mesh;
   out.has_colors = !mesh.colors.empty();

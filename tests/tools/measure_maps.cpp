@@ -1,5 +1,5 @@
-// Shadow maps against rays: sizes, and the two numbers of the offset. Prints the tables of
-// docs/kuehl.md in Markdown. Usage: measure_maps
+// Shadow maps against rays: sizes, and the two numbers of the offset. Prints what docs/kuehl.md has
+// in its tables, and times, in Markdown. Usage: measure_maps
 //
 // Twenty random scenes of closed bodies above a plate (tests/pipeline/test_meshes.h), 320x240, each
 // with a light that one map can serve. Of the pixels that face the light: dark ones that Embree
@@ -60,11 +60,14 @@ struct Sum {
   }
 };
 
-Sum measure(const std::vector<View>& views, const MapSettings& settings) {
+/// `settings_of` gives each view's settings.
+template <class SettingsOf>
+Sum measure_each(const std::vector<View>& views, SettingsOf settings_of) {
   Sum sum;
   Buffers lit, mapped;
   MapMemory maps;
   for (const View& view : views) {
+    const MapSettings settings = settings_of(view);
     draw(lit, maps, view.scene, view.camera, ShadowMethod::none, settings);
     // The second time memory is warm.
     for (int i = 0; i < 2; ++i) {
@@ -88,6 +91,10 @@ Sum measure(const std::vector<View>& views, const MapSettings& settings) {
   return sum;
 }
 
+Sum measure(const std::vector<View>& views, const MapSettings& settings) {
+  return measure_each(views, [&](const View&) { return settings; });
+}
+
 void print(const std::string& name, Sum sum) {
   std::printf("| %s | %zu | %zu | %.3f %% | %.2f |\n", name.c_str(), sum.dark, sum.light,
               100.0 * static_cast<double>(sum.dark + sum.light) / static_cast<double>(sum.tested),
@@ -107,7 +114,8 @@ std::vector<View> make_views() {
     View view{.scene = test::random_scene(random)};
     if (view.scene.lights[0].position.w != 0.0f) view.scene.lights[0].position.y += 6.0f;
     view.camera = test::look({2.0f, 4.0f, 4.0f}, glm::vec3(0.0f), kWidth, kHeight);
-    if (!plan_shadow_map(view.scene, view.scene.lights[0], view.camera, {})) continue;
+    const auto plan = plan_shadow_map(view.scene, view.scene.lights[0], view.camera, {});
+    if (!plan || plan->empty) continue;
     const RayReference rays(view.scene);
     view.samples = rays.cast(pixel_rays(view.camera), view.scene.lights[0].position);
     views.push_back(std::move(view));
@@ -127,22 +135,24 @@ void run() {
     print(std::to_string(size), measure(views, {.size = size, .filter = raster::Filter::linear}));
   const Sum found = measure(views, {.size = 512});
   std::vector<std::size_t> best = found.wrong;
-  const auto sweep = [&](const char* format, float value, const raster::PolygonOffset& offset) {
-    char name[32];
-    std::snprintf(name, sizeof name, format, static_cast<double>(value));
-    const Sum sum = measure(views, {.size = 512, .offset = offset});
+  const auto sweep = [&](const std::string& name, const Sum& sum) {
     for (std::size_t i = 0; i < best.size(); ++i) best[i] = std::min(best[i], sum.wrong[i]);
     print(name, sum);
   };
-  heading("offset scale, at size 512, units as found");
-  const float units =
-      plan_shadow_map(views[0].scene, views[0].scene.lights[0], views[0].camera, {.size = 512})
-          ->offset.units;
-  for (const float factor : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f, 1.25f, 1.5f, 2.0f, 4.0f, 8.0f})
-    sweep("%.2f", factor, {factor, units});
+  heading("displace scale at size 512, offset as found");
+  for (const char* scale : {"0", "0.25", "0.5", "0.75", "1", "1.25", "1.5", "2", "4", "8"})
+    sweep(scale, measure_each(views, [&](const View& view) {
+            MapSettings settings{.size = 512};
+            settings.offset =
+                plan_shadow_map(view.scene, view.scene.lights[0], view.camera, settings)->offset;
+            settings.offset->factor = std::stof(scale);
+            return settings;
+          }));
   print("found", found);
-  heading("offset units of D24, at size 512, scale 1");
-  for (const float u : {0.0f, 10.0f, 100.0f, 1e3f, 1e4f, 1e5f, 1e6f}) sweep("%.0f", u, {1.0f, u});
+  heading("offset at size 512, scale 1, in units of D24");
+  for (const char* units : {"0", "1000", "10000", "100000", "1000000"})
+    sweep(units,
+          measure(views, {.size = 512, .offset = raster::PolygonOffset{1.0f, std::stof(units)}}));
   std::size_t near = 0;
   for (std::size_t i = 0; i < best.size(); ++i) near += found.wrong[i] * 10 <= best[i] * 11;
   std::printf("\nwithin a tenth of the best offset of its sweeps: %zu of %zu scenes\n", near,

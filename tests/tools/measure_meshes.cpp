@@ -9,7 +9,10 @@
 // passes within a pixel, or where two units of depth decide (tests/pipeline/stencil_check.h).
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <memory>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <glm/common.hpp>
