@@ -1,5 +1,6 @@
 #include "ar/assimp_model.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -310,7 +311,9 @@ void keep_one_reader(Assimp::Importer& importer, const std::string& extension) {
   std::vector<Assimp::BaseImporter*> others;
   for (std::size_t i = 0; i < importer.GetImporterCount(); ++i)
     if (i != wanted) others.push_back(importer.GetImporter(i));
-  for (Assimp::BaseImporter* other : others) importer.UnregisterLoader(other);
+  // A reader that is taken away is nobody's.
+  for (Assimp::BaseImporter* other : others)
+    if (importer.UnregisterLoader(other) == aiReturn_SUCCESS) delete other;
 }
 
 /// assimp's reason, in our words where it means that the file holds no mesh.
