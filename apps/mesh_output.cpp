@@ -1,6 +1,7 @@
 #include "apps/mesh_output.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "ar/error.h"
 #include "ar/file.h"
@@ -8,6 +9,16 @@
 #include "ar/model_writer.h"
 
 namespace gnomon::apps {
+
+void add_mesh_and_output(CLI::App& command, std::filesystem::path& mesh,
+                         std::filesystem::path& out) {
+  command.add_option("mesh", mesh, "Mesh file")->required();
+  command
+      .add_option("-o,--out", out,
+                  "File for the result: .glb, .gltf, .obj, .ply or .stl (the last three without "
+                  "materials)")
+      ->required();
+}
 
 void check_mesh_output(const std::filesystem::path& input, const std::filesystem::path& output) {
   ar::check_written_extension(output);
@@ -24,9 +35,7 @@ pipeline::MeshCheck write_checked(const std::filesystem::path& output, const pip
   ar::write_model(file.temporary(), model);
   pipeline::MeshCheck written =
       pipeline::check_mesh(ar::load_model(file.temporary()).model, options);
-  if (written.open_edges.count > meant.open_edges.count ||
-      written.non_manifold_edges.count > meant.non_manifold_edges.count ||
-      written.misoriented_edges.count > meant.misoriented_edges.count)
+  if (pipeline::has_more_faults(written, meant))
     throw ar::InputError(fmt::format(
         "{}: cannot be written: this format rounds positions so that edges part ({}); .glb does "
         "not",

@@ -6,7 +6,15 @@
 #include "pipeline/mesh.h"
 #include "pipeline/mesh_check.h"
 
+namespace CLI {
+class App;
+}
+
 namespace gnomon::apps {
+
+/// Adds what a command is called with that makes a mesh from another: the one and --out.
+void add_mesh_and_output(CLI::App& command, std::filesystem::path& mesh,
+                         std::filesystem::path& out);
 
 /// Before any work: can the format be written, and is the output not the input? Throws
 /// ar::InputError if not.

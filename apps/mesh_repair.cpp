@@ -111,12 +111,7 @@ void add_mesh_repair(CLI::App& mesh) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       mesh.add_subcommand("repair", "Make a mesh cast classical shadow volumes, and say how");
-  command->add_option("mesh", options->mesh, "Mesh file")->required();
-  command
-      ->add_option("-o,--out", options->out,
-                   "File for the result: .glb, .gltf, .obj, .ply or .stl (the last three without "
-                   "materials)")
-      ->required();
+  add_mesh_and_output(*command, options->mesh, options->out);
   command
       ->add_option("--tolerance", options->repair.tolerance_m,
                    "Metres that a vertex may move (default: 1e-5 of the bounding box's diagonal)")

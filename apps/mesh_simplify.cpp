@@ -109,12 +109,7 @@ void add_mesh_simplify(CLI::App& mesh) {
   auto options = std::make_shared<Options>();
   CLI::App* command = mesh.add_subcommand(
       "simplify", "Leave out triangles as far as an error in pixels or metres allows");
-  command->add_option("mesh", options->mesh, "Mesh file")->required();
-  command
-      ->add_option("-o,--out", options->out,
-                   "File for the result: .glb, .gltf, .obj, .ply or .stl (the last three without "
-                   "materials)")
-      ->required();
+  add_mesh_and_output(*command, options->mesh, options->out);
   command
       ->add_option("--error", options->error,
                    "How far the surface may be off: pixels (0.5px, with --distance) or metres "

@@ -158,8 +158,7 @@ std::vector<std::uint32_t> triangles(const Document& document, int mode,
 /// Reads the primitives of one document.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path)
-      : document_(gltf::load_document(path)), materials_(document_) {}
+  explicit Reader(Document document) : document_(std::move(document)), materials_(document_) {}
 
   GltfModel read() {
     for (const PlacedNode& placed : placed_nodes(document_)) add_node(placed);
@@ -368,14 +367,24 @@ glm::dvec3 center_of(const Document& document, const PlacedNode& placed, std::si
   return low ? (*low + *high) / 2.0 : origin;
 }
 
-}  // namespace
-
-GltfModel read_gltf(const std::filesystem::path& path) {
+/// Reads the document that load() gives.
+template <class Load>
+GltfModel read_within_memory(const std::filesystem::path& path, Load load) {
   try {
-    return Reader(path).read();
+    return Reader(load()).read();
   } catch (const std::bad_alloc&) {
     fail(path, "too large for this machine's memory");
   }
+}
+
+}  // namespace
+
+GltfModel read_gltf(const std::filesystem::path& path) {
+  return read_within_memory(path, [&] { return gltf::load_document(path); });
+}
+
+GltfModel read_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  return read_within_memory(path, [&] { return gltf::load_document(path, bytes); });
 }
 
 std::vector<GltfNode> read_gltf_nodes(const std::filesystem::path& path) {

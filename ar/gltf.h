@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct GltfNode {
 /// finite, a node reached twice, a required extension that is not read, no triangle at all. Holds
 /// afterwards: every mesh has normals; every index is below the number of positions.
 GltfModel read_gltf(const std::filesystem::path& path);
+/// The same where the file's own bytes are at hand.
+GltfModel read_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 /// The nodes of the file's scene, parents before children. Throws InputError as read_gltf does,
 /// except that a file without triangles is welcome.

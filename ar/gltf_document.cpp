@@ -235,7 +235,10 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
 }  // namespace
 
 Document load_document(const fs::path& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, kMaxFileBytes);
+  return load_document(path, read_file(path, kMaxFileBytes));
+}
+
+Document load_document(const fs::path& path, std::span<const std::uint8_t> bytes) {
   const std::string_view text = json_text(path, bytes);
   Document document{path, {}, {}};
   std::string error, warning;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,8 @@ struct Document {
 /// Reads the file, its buffers and its encoded pictures. Pictures are not decoded; those in a
 /// buffer view stay there. Throws InputError.
 Document load_document(const std::filesystem::path& path);
+/// The same where the file's own bytes are at hand.
+Document load_document(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 /// The bytes [0, byteLength) of a buffer view. `place` begins the message of an InputError.
 struct Bytes {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/ply_bytes.h"
+#include "ar/text_words.h"
 
 namespace gnomon::ar {
 
@@ -35,18 +35,6 @@ std::uint32_t u32(Bytes bytes, std::size_t at) {
          std::uint32_t{bytes[at + 1]} << 8 | bytes[at];
 }
 
-bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
-
-/// The text's words, one after the other; empty at its end.
-std::string_view next_word(std::string_view& text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  std::size_t length = 0;
-  while (length < text.size() && !is_space(text[length])) ++length;
-  const std::string_view word = text.substr(0, length);
-  text.remove_prefix(length);
-  return word;
-}
-
 std::string lower(std::string_view text) {
   std::string out(text);
   std::transform(out.begin(), out.end(), out.begin(),
@@ -55,20 +43,14 @@ std::string lower(std::string_view text) {
 }
 
 std::uint64_t count_of(const fs::path& path, std::string_view word, std::string_view what) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size())
-    fail(path, fmt::format("{}: '{}' is no count", what, word.substr(0, 40)));
-  return value;
+  const std::optional<std::uint64_t> count = parse_count(word);
+  if (!count) fail(path, fmt::format("{}: '{}' is no count", what, word.substr(0, 40)));
+  return *count;
 }
 
 void require_number(const fs::path& path, std::string_view word, std::string_view what,
                     std::uint64_t number) {
-  std::string_view digits = word;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+  if (!is_number(word))
     fail(path, fmt::format("{} {}: '{}' is no number", what, number, word.substr(0, 40)));
 }
 

@@ -20,7 +20,7 @@ ModelFile load_model(const std::filesystem::path& path) {
   const std::vector<std::uint8_t> bytes = read_file(path, kMaxFileBytes);
   const MeshFormat format = mesh_format(bytes, path);
   if (format == MeshFormat::gltf) {
-    GltfModel file = read_gltf(path);
+    GltfModel file = read_gltf(path, bytes);
     return {std::move(file.model), std::move(file.notes)};
   }
   check_mesh_bytes(format, bytes, path);

@@ -1,17 +1,17 @@
 #include "ar/ply_bytes.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 
-#include <cctype>
-#include <charconv>
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "ar/error.h"
 #include "ar/file.h"
+#include "ar/text_words.h"
 
 namespace gnomon::ar {
 
@@ -36,16 +36,6 @@ struct Element {
   std::uint64_t count = 0;
   std::vector<Property> properties;
 };
-
-std::string_view next_word(std::string_view& text) {
-  const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  std::size_t length = 0;
-  while (length < text.size() && !is_space(text[length])) ++length;
-  const std::string_view word = text.substr(0, length);
-  text.remove_prefix(length);
-  return word;
-}
 
 class PlyWalk {
  public:
@@ -75,11 +65,9 @@ class PlyWalk {
   }
 
   std::uint64_t count_of(std::string_view word, std::string_view where) const {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      fail(fmt::format("{}: '{}' is no count", where, word.substr(0, 40)));
-    return value;
+    const std::optional<std::uint64_t> count = parse_count(word);
+    if (!count) fail(fmt::format("{}: '{}' is no count", where, word.substr(0, 40)));
+    return *count;
   }
 
   Type type_of(std::string_view word, std::string_view line) const {
@@ -128,11 +116,7 @@ class PlyWalk {
   }
 
   void require_number(std::string_view word, const Element& element, std::uint64_t index) const {
-    std::string_view digits = word;
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+    if (!is_number(word))
       fail(fmt::format("{} {}: '{}' is no number", element.name, index, word.substr(0, 40)));
   }
 

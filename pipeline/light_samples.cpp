@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "pipeline/basis.h"
+#include "pipeline/finite.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -26,7 +27,7 @@ glm::vec3 middle_of(const Scene& scene) {
     for (const Part& part : object.model->parts) {
       for (const glm::vec4& p : part.mesh.positions) {
         const glm::vec3 world(object.world_from_model * p);
-        if (!std::isfinite(world.x) || !std::isfinite(world.y) || !std::isfinite(world.z)) continue;
+        if (!is_finite(world)) continue;
         low = glm::min(low, world);
         high = glm::max(high, world);
       }

@@ -11,16 +11,13 @@
 #include <glm/geometric.hpp>
 
 #include "pipeline/disjoint_sets.h"
+#include "pipeline/finite.h"
 #include "pipeline/point_tree.h"
 #include "pipeline/self_intersection.h"
 #include "pipeline/topology.h"
 
 namespace gnomon::pipeline {
 namespace {
-
-bool finite(const glm::vec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 /// The box around the finite positions that triangles use; low above high without one.
 struct Box {
@@ -33,7 +30,7 @@ Box box_of(const Model& model) {
   for (const Part& part : model.parts) {
     for (const std::uint32_t index : part.mesh.indices) {
       const glm::vec4& position = part.mesh.positions[index];
-      if (!finite(glm::vec3(position))) continue;
+      if (!is_finite(glm::vec3(position))) continue;
       box.low = glm::min(box.low, glm::dvec3(position));
       box.high = glm::max(box.high, glm::dvec3(position));
     }
@@ -117,7 +114,7 @@ class Checker {
     first_source_.assign(topology_.positions.size(), 0);
     for (std::uint32_t v = 0; v < base; ++v) {
       const std::uint32_t w = topology_.welded[v];
-      if (!finite(glm::vec3(topology_.positions[w]))) add(check_.non_finite_vertices, {}, {v});
+      if (!is_finite(glm::vec3(topology_.positions[w]))) add(check_.non_finite_vertices, {}, {v});
       if (!used[v]) {
         add(check_.unreferenced_vertices, {}, {v});
         continue;
@@ -142,7 +139,7 @@ class Checker {
         for (std::size_t k = 0; k < 3; ++k) {
           source[k] = static_cast<std::uint32_t>(base + indices[i + k]);
           welded[k] = topology_.welded[source[k]];
-          all_finite = all_finite && finite(glm::vec3(topology_.positions[welded[k]]));
+          all_finite = all_finite && is_finite(glm::vec3(topology_.positions[welded[k]]));
         }
         if (!all_finite) continue;
         const glm::dvec3 cross =
@@ -323,6 +320,12 @@ bool MeshCheck::casts_classical_volume() const {
 
 MeshCheck check_mesh(const Model& model, const MeshCheckOptions& options) {
   return Checker(model, options).run();
+}
+
+bool has_more_faults(const MeshCheck& check, const MeshCheck& than) {
+  return check.open_edges.count > than.open_edges.count ||
+         check.non_manifold_edges.count > than.non_manifold_edges.count ||
+         check.misoriented_edges.count > than.misoriented_edges.count;
 }
 
 double mesh_tolerance(const Model& model, double tolerance_m) {

@@ -93,6 +93,9 @@ struct MeshCheck {
 /// Preconditions: three indices a triangle, each below its part's number of positions.
 MeshCheck check_mesh(const Model& model, const MeshCheckOptions& options = {});
 
+/// Some kind of edge that a classical volume cannot have is more frequent in `check`.
+bool has_more_faults(const MeshCheck& check, const MeshCheck& than);
+
 /// The tolerance in metres: `tolerance_m`, or the default where that is negative; at least 32 steps
 /// of the float with the model's largest coordinate, since nothing smaller can be told apart there.
 double mesh_tolerance(const Model& model, double tolerance_m);

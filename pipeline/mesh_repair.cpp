@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "pipeline/finite.h"
 #include "pipeline/mesh_check.h"
 #include "pipeline/repair_surface.h"
 #include "pipeline/topology.h"
@@ -31,10 +32,6 @@ std::vector<ModelCorner> corners_of(const Model& model) {
   return corners;
 }
 
-bool is_finite(const glm::vec4& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 Surface surface_of(const Model& model, const std::vector<ModelCorner>& corners,
                    MeshRepairReport& report) {
   const Topology topology = build_topology(model);
@@ -50,7 +47,7 @@ Surface surface_of(const Model& model, const std::vector<ModelCorner>& corners,
   }
   for (std::size_t c = 0; c < corners.size(); c += 3) {
     const auto finite = [&](const ModelCorner& corner) {
-      return is_finite(model.parts[corner.part].mesh.positions[corner.vertex]);
+      return is_finite(glm::vec3(model.parts[corner.part].mesh.positions[corner.vertex]));
     };
     report.non_finite_triangles += !std::all_of(&corners[c], &corners[c] + 3, finite);
   }

@@ -87,12 +87,6 @@ Part with_triangles(const Part& part, const WeldedPart& welded,
   return out;
 }
 
-bool has_more_faults(const MeshCheck& check, const MeshCheck& than) {
-  return check.open_edges.count > than.open_edges.count ||
-         check.non_manifold_edges.count > than.non_manifold_edges.count ||
-         check.misoriented_edges.count > than.misoriented_edges.count;
-}
-
 std::size_t triangles_of(const Model& model) {
   std::size_t count = 0;
   for (const Part& part : model.parts) count += part.mesh.triangle_count();

@@ -25,6 +25,8 @@
 #include <glm/geometric.hpp>
 
 #include "pipeline/basis.h"
+#include "pipeline/finite.h"
+#include "pipeline/half_space.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -36,15 +38,7 @@ constexpr double kWiden = 1e-6;
 constexpr double kTooNear = 1e-3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The half space dot(normal, p) >= offset.
-struct HalfSpace {
-  glm::dvec3 normal;
-  double offset;
-  double of(const glm::dvec3& p) const { return glm::dot(normal, p) - offset; }
-};
-
 using Region = std::vector<HalfSpace>;
-using Polygon = std::vector<glm::dvec3>;
 
 /// Is the box wholly outside one of the half spaces?
 bool box_outside(const Receivers::Group& group, const Region& region) {
@@ -55,21 +49,6 @@ bool box_outside(const Receivers::Group& group, const Region& region) {
     if (half.of(farthest) < 0.0) return true;
   }
   return false;
-}
-
-void clip(Polygon& polygon, const Region& region, Polygon& scratch) {
-  for (const HalfSpace& half : region) {
-    scratch.clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const glm::dvec3& p = polygon[i];
-      const glm::dvec3& q = polygon[(i + 1) % polygon.size()];
-      const double dp = half.of(p), dq = half.of(q);
-      if (dp >= 0.0) scratch.push_back(p);
-      if ((dp >= 0.0) != (dq >= 0.0)) scratch.push_back(p + (q - p) * (dp / (dp - dq)));
-    }
-    polygon.swap(scratch);
-    if (polygon.empty()) return;
-  }
 }
 
 /// The largest values of two functions over receivers cut to a region: the distance from an origin
@@ -287,8 +266,7 @@ void Receivers::add(const Model& model, const glm::mat4& world_from_model) {
         raster::require(mesh.indices[i + corner] < mesh.positions.size(),
                         "a mesh's index names one of its positions");
         triangle[corner] = glm::dvec3(world * glm::dvec4(mesh.positions[mesh.indices[i + corner]]));
-        const glm::dvec3& p = triangle[corner];
-        finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+        finite = finite && is_finite(triangle[corner]);
       }
       if (!finite) continue;
       for (const glm::dvec3& corner : triangle) box.add(corner);

@@ -31,6 +31,8 @@
 #include <glm/vec3.hpp>
 
 #include "pipeline/basis.h"
+#include "pipeline/finite.h"
+#include "pipeline/half_space.h"
 #include "pipeline/silhouette.h"
 #include "raster/check.h"
 #include "raster/clip.h"
@@ -46,26 +48,6 @@ constexpr double kDepthFar = 1.0 - 1.0 / 1024.0;
 /// A map that is found has so many texels at least, and a multiple of them.
 constexpr int kSizeStep = 64;
 
-/// Points p with dot(normal, p) >= offset.
-struct HalfSpace {
-  glm::dvec3 normal{0.0};
-  double offset = 0.0;
-  double distance(const glm::dvec3& p) const { return glm::dot(normal, p) - offset; }
-};
-
-using Polygon = std::vector<glm::dvec3>;
-
-void cut(Polygon& polygon, const HalfSpace& half, Polygon& scratch) {
-  scratch.clear();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double da = half.distance(a), db = half.distance(b);
-    if (da >= 0.0) scratch.push_back(a);
-    if ((da >= 0.0) != (db >= 0.0)) scratch.push_back(a + (b - a) * (da / (da - db)));
-  }
-  polygon.swap(scratch);
-}
-
 /// What lies before the eye and between the sides of its view.
 std::array<HalfSpace, 5> view_of(const Camera& camera) {
   const glm::dmat4 rows = glm::transpose(glm::dmat4(camera.clip_from_world));
@@ -77,10 +59,6 @@ std::array<HalfSpace, 5> view_of(const Camera& camera) {
     halves[i + 1] = {glm::dvec3(plane), -plane.w};
   }
   return halves;
-}
-
-bool finite(const glm::dvec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 /// Calls body(a, b, c) with the world corners of each triangle of an object whose corners are
@@ -95,7 +73,7 @@ void for_each_triangle(const Object& object, Body body) {
         return glm::dvec3(world * glm::dvec4(mesh.positions[mesh.indices[i + k]]));
       };
       const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
-      if (finite(a) && finite(b) && finite(c)) body(a, b, c);
+      if (is_finite(a) && is_finite(b) && is_finite(c)) body(a, b, c);
     }
   }
 }
@@ -201,10 +179,7 @@ std::vector<Polygon> visible_receivers(const Scene& scene, const Camera& camera)
     if (!object.receives) continue;
     for_each_triangle(object, [&](const auto&... corners) {
       Polygon polygon{corners...};
-      for (const HalfSpace& half : view) {
-        if (polygon.empty()) return;
-        cut(polygon, half, scratch);
-      }
+      clip(polygon, view, scratch);
       if (!polygon.empty()) parts.push_back(std::move(polygon));
     });
   }
@@ -230,12 +205,10 @@ int size_for(const LightView& view, const Rectangle& rectangle, std::vector<Poly
   const PixelSize pixel(camera);
   const double extent = std::max(rectangle.extent().x, rectangle.extent().y);
   double wanted = 1.0;
+  const std::array<HalfSpace, 4> sides = view.sides(rectangle);
   Polygon scratch;
   for (Polygon& polygon : receivers) {
-    for (const HalfSpace& half : view.sides(rectangle)) {
-      if (polygon.empty()) break;
-      cut(polygon, half, scratch);
-    }
+    clip(polygon, sides, scratch);
     for (const glm::dvec3& p : polygon) {
       const double pixel_m = pixel.at(p);
       if (!(pixel_m > 0.0)) return largest;

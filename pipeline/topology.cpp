@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "pipeline/finite.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -76,10 +77,6 @@ std::vector<std::uint32_t> weld(const std::vector<glm::vec4>& positions,
     }
   }
   return vertex;
-}
-
-bool finite(const glm::vec4& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 struct HalfEdge {
@@ -173,8 +170,9 @@ Topology build_topology(const Model& model) {
   for (std::size_t i = 0; i + 2 < soup.indices.size(); i += 3) {
     const std::uint32_t a = vertex[soup.indices[i]], b = vertex[soup.indices[i + 1]],
                         c = vertex[soup.indices[i + 2]];
-    const bool usable = a != b && b != c && c != a && finite(topology.positions[a]) &&
-                        finite(topology.positions[b]) && finite(topology.positions[c]);
+    const bool usable = a != b && b != c && c != a && is_finite(glm::vec3(topology.positions[a])) &&
+                        is_finite(glm::vec3(topology.positions[b])) &&
+                        is_finite(glm::vec3(topology.positions[c]));
     if (!usable) {
       ++topology.faults.dropped_triangles;
       continue;

@@ -73,10 +73,6 @@ bool before(const Corner& a, const Corner& b) {
   return key(a) < key(b);
 }
 
-bool finite(const glm::vec4& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
-}
-
 SnappedVertex snapped(const ProjectedVertex& vertex) {
   return {vertex.x_fx, vertex.y_fx, vertex.z_fx};
 }

@@ -14,11 +14,11 @@ std::int32_t snap(double window) {
   return static_cast<std::int32_t>(round_to_nearest(std::clamp(window * 256.0, -kLimit, kLimit)));
 }
 
+}  // namespace
+
 bool finite(const glm::vec4& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
 }
-
-}  // namespace
 
 ProjectedVertex project(const glm::dvec4& clip, const Projection& p) {
   ProjectedVertex out;

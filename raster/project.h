@@ -44,6 +44,9 @@ struct ProjectedPlanes {
   double* inverse_w;
 };
 
+/// No coordinate is infinite or NaN.
+bool finite(const glm::vec4& clip);
+
 /// Precondition: a finite position with w > 0.
 ProjectedVertex project(const glm::dvec4& clip, const Projection& projection);
 

@@ -1,6 +1,7 @@
 #include "raster/select_triangles.h"
 
 #include <algorithm>
+#include <array>
 
 #include "raster/geometry.h"
 
@@ -13,28 +14,18 @@ int first_pixel(std::int32_t fx) { return (fx + 127) >> 8; }
 /// One past the last pixel whose centre is at or before it.
 int end_pixel(std::int32_t fx) { return ((fx - 128) >> 8) + 1; }
 
-/// The corners of one triangle.
-struct Corners {
-  std::int32_t x[3], y[3];
-
-  std::int64_t area() const {
-    return std::int64_t{x[1] - x[0]} * (y[2] - y[0]) - std::int64_t{x[2] - x[0]} * (y[1] - y[0]);
-  }
-  Edge edge(int from, int to) const { return {y[from] - y[to], x[to] - x[from], x[from], y[from]}; }
-};
-
-bool holds_a_center(const Corners& corners, bool clockwise, const PixelBox& box) {
-  const int second = clockwise ? 2 : 1, third = clockwise ? 1 : 2;
-  const Edge edges[3] = {corners.edge(second, third), corners.edge(third, 0),
-                         corners.edge(0, second)};
-  for (int y = box.y0; y < box.y1; ++y) {
-    for (int x = box.x0; x < box.x1; ++x) {
-      if (std::all_of(edges, edges + 3, [&](const Edge& edge) {
-            return edge.at(x * std::int64_t{256} + 128, y * std::int64_t{256} + 128) >= edge.bias();
-          }))
-        return true;
-    }
-  }
+/// The triangle, of this winding, covers the centre of a pixel of the box.
+bool holds_a_center(const std::array<SnappedVertex, 3>& corners, bool clockwise,
+                    const PixelBox& box) {
+  SetupTriangle triangle;
+  triangle.vertices = {corners[0], corners[clockwise ? 2 : 1], corners[clockwise ? 1 : 2]};
+  triangle.x0 = static_cast<std::int16_t>(box.x0);
+  triangle.y0 = static_cast<std::int16_t>(box.y0);
+  triangle.x1 = static_cast<std::int16_t>(box.x1);
+  triangle.y1 = static_cast<std::int16_t>(box.y1);
+  for (int y = box.y0; y < box.y1; ++y)
+    for (int x = box.x0; x < box.x1; ++x)
+      if (triangle.covers(x, y)) return true;
   return false;
 }
 
@@ -45,18 +36,19 @@ void select_triangles(const TriangleSelector& selector, const std::uint32_t* ind
   out.clipped = out.kept = out.clockwise = out.small = out.planes = 0;
   for (std::size_t t = 0; t < count; ++t) {
     const TriangleMask bit = TriangleMask{1} << t;
-    Corners corners;
+    std::array<SnappedVertex, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
-      corners.x[k] = selector.x_fx[indices[3 * t + k]];
-      corners.y[k] = selector.y_fx[indices[3 * t + k]];
+      const std::uint32_t i = indices[3 * t + k];
+      corners[k] = {selector.x_fx[i], selector.y_fx[i]};
     }
-    const auto [x_min, x_max] = std::minmax({corners.x[0], corners.x[1], corners.x[2]});
+    const auto& [a, b, c] = corners;
+    const auto [x_min, x_max] = std::minmax({a.x_fx, b.x_fx, c.x_fx});
     if (x_min == kClipped) {
       out.clipped |= bit;
       continue;
     }
-    const auto [y_min, y_max] = std::minmax({corners.y[0], corners.y[1], corners.y[2]});
-    const std::int64_t area = corners.area();
+    const auto [y_min, y_max] = std::minmax({a.y_fx, b.y_fx, c.y_fx});
+    const std::int64_t area = doubled_area(a, b, c);
     const bool clockwise = area < 0;
     if (area == 0 || !(clockwise ? selector.keeps_cw : selector.keeps_ccw)) continue;
     const PixelBox box = intersect(

@@ -17,6 +17,7 @@
 
 #include "ar/error.h"
 #include "ar/file.h"
+#include "tests/ar/model_checks.h"
 #include "tests/ar/temporary_folder.h"
 
 namespace gnomon::ar {
@@ -38,29 +39,11 @@ std::size_t triangle_count(const pipeline::Model& model) {
 void expect_sound(const pipeline::Model& model) {
   for (const pipeline::Part& part : model.parts) {
     const pipeline::Mesh& mesh = part.mesh;
-    EXPECT_EQ(mesh.indices.size() % 3, 0u);
-    EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
+    test::expect_sound_mesh(mesh);
+    if (::testing::Test::HasFatalFailure()) return;
     EXPECT_TRUE(mesh.texcoords.empty() || mesh.texcoords.size() == mesh.positions.size());
-    EXPECT_TRUE(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size());
     EXPECT_EQ(part.texture == nullptr, mesh.texcoords.empty());
-    for (const std::uint32_t index : mesh.indices) ASSERT_LT(index, mesh.positions.size());
-    for (const glm::vec4& p : mesh.positions)
-      ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && p.w == 1.0f);
-    for (const glm::vec3& n : mesh.normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f);
   }
-}
-
-/// Six times the volume inside a closed mesh; positive if it is wound counter-clockwise outside.
-double volume6(const pipeline::Model& model) {
-  double volume = 0.0;
-  for (const pipeline::Part& part : model.parts) {
-    const auto at = [&](std::size_t i) {
-      return glm::dvec3(part.mesh.positions[part.mesh.indices[i]]);
-    };
-    for (std::size_t i = 0; i < part.mesh.indices.size(); i += 3)
-      volume += glm::dot(at(i), glm::cross(at(i + 1), at(i + 2)));
-  }
-  return volume;
 }
 
 std::size_t distinct_positions(const pipeline::Model& model) {
@@ -238,9 +221,9 @@ fs::path write_json(const TemporaryFolder& folder, const json& document) {
 TEST(Gltf, NodesPlaceMeshesAndMirroredOnesKeepTheirOutside) {
   const TemporaryFolder folder;
   json document = tetrahedron();
-  EXPECT_DOUBLE_EQ(volume6(read_gltf(write_json(folder, document)).model), 1.0);
+  EXPECT_DOUBLE_EQ(test::volume6(read_gltf(write_json(folder, document)).model), 1.0);
   document["nodes"][0]["scale"] = {-2, 3, 1};
-  EXPECT_DOUBLE_EQ(volume6(read_gltf(write_json(folder, document)).model), 6.0);
+  EXPECT_DOUBLE_EQ(test::volume6(read_gltf(write_json(folder, document)).model), 6.0);
   document["nodes"] = {{{"children", {1}}, {"translation", {1, 2, 3}}},
                        {{"mesh", 0}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}}};
   const GltfModel turned = read_gltf(write_json(folder, document));

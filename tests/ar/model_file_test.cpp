@@ -21,6 +21,7 @@
 #include "ar/scene_file.h"
 #include "pipeline/mesh_check.h"
 #include "tests/ar/cube_files.h"
+#include "tests/ar/model_checks.h"
 #include "tests/ar/temporary_folder.h"
 
 namespace gnomon::ar {
@@ -37,13 +38,8 @@ void expect_sound(const pipeline::Model& model) {
   ASSERT_FALSE(model.parts.empty());
   for (const pipeline::Part& part : model.parts) {
     const pipeline::Mesh& mesh = part.mesh;
-    EXPECT_EQ(mesh.indices.size() % 3, 0u);
-    EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
-    EXPECT_TRUE(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size());
-    for (const std::uint32_t index : mesh.indices) ASSERT_LT(index, mesh.positions.size());
-    for (const glm::vec4& p : mesh.positions)
-      ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && p.w == 1.0f);
-    for (const glm::vec3& n : mesh.normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f);
+    test::expect_sound_mesh(mesh);
+    if (::testing::Test::HasFatalFailure()) return;
     for (const glm::vec4& c : mesh.colors)
       for (int k = 0; k < 3; ++k) ASSERT_TRUE(c[k] >= 0.0f && c[k] <= 1.0f);
   }
@@ -56,19 +52,6 @@ std::string message_of(const fs::path& path) {
     return e.what();
   }
   return "";
-}
-
-/// Six times the volume inside.
-double volume6(const pipeline::Model& model) {
-  double volume = 0.0;
-  for (const pipeline::Part& part : model.parts) {
-    const auto at = [&](std::size_t i) {
-      return glm::dvec3(part.mesh.positions[part.mesh.indices[i]]);
-    };
-    for (std::size_t i = 0; i < part.mesh.indices.size(); i += 3)
-      volume += glm::dot(at(i), glm::cross(at(i + 1), at(i + 2)));
-  }
-  return volume;
 }
 
 class ModelFileTest : public ::testing::Test {
@@ -94,7 +77,7 @@ TEST_F(ModelFileTest, TheSameCubeInEveryFormat) {
     EXPECT_EQ(check.triangles, 12u) << name;
     EXPECT_EQ(check.welded_vertices, 8u) << name;
     EXPECT_TRUE(check.casts_classical_volume()) << name;
-    EXPECT_NEAR(volume6(file.model), 6.0 * 8.0, 1e-5) << name << ": outwards, of edge 2";
+    EXPECT_NEAR(test::volume6(file.model), 6.0 * 8.0, 1e-5) << name << ": outwards, of edge 2";
   }
 }
 
@@ -103,7 +86,7 @@ TEST_F(ModelFileTest, ContentsDecideWhereTheySayTheFormat) {
   for (const char* name :
        {"ascii.ply", "binary.ply", "ascii.stl", "binary.stl", "cube.off", "cube.3ds"}) {
     const ModelFile file = load_model(write(std::string(name) + ".obj", cubes.at(name)));
-    EXPECT_NEAR(volume6(file.model), 48.0, 1e-5) << name;
+    EXPECT_NEAR(test::volume6(file.model), 48.0, 1e-5) << name;
   }
   const fs::path glb = fs::path(GNOMON_SOURCE_DIR) / "tests/data/gltf/good/Box.glb";
   EXPECT_EQ(load_model(write("box.obj",
@@ -114,7 +97,7 @@ TEST_F(ModelFileTest, ContentsDecideWhereTheySayTheFormat) {
                 .model.parts.size(),
             1u);
   expect_refused(write("cube.xyz", cubes.at("cube.obj")), "'.xyz' is no model format");
-  EXPECT_NEAR(volume6(load_model(write("CUBE.OBJ", cubes.at("cube.obj"))).model), 48.0, 1e-5);
+  EXPECT_NEAR(test::volume6(load_model(write("CUBE.OBJ", cubes.at("cube.obj"))).model), 48.0, 1e-5);
 }
 
 // Oracle: counts that another program took.
@@ -313,7 +296,7 @@ TEST_F(ModelFileTest, SceneTakesAModelOfAnyFormat) {
   write("cube.off", test::cube_files().at("cube.off"));
   scene.objects.push_back({.name = "cube", .model = folder_.path() / "cube.off"});
   const auto models = load_models(scene);
-  EXPECT_NEAR(volume6(*models.at(0)), 48.0, 1e-5);
+  EXPECT_NEAR(test::volume6(*models.at(0)), 48.0, 1e-5);
 }
 
 }  // namespace
