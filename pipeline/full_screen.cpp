@@ -46,14 +46,14 @@ void flag_counts(raster::Frame& frame) {
                {.func = raster::CompareFunc::not_equal,
                 .read_mask = 0x7f,
                 .pass = raster::StencilOp::replace},
-               0x80, "counts become bit 7");
+               kCounted, "counts become bit 7");
 }
 
 void drop_flagged(raster::Frame& frame) {
   stencil_quad(
       frame,
-      {.func = raster::CompareFunc::equal, .read_mask = 0x80, .pass = raster::StencilOp::zero},
-      0x80, "zero where bit 7 is set");
+      {.func = raster::CompareFunc::equal, .read_mask = kCounted, .pass = raster::StencilOp::zero},
+      kCounted, "zero where bit 7 is set");
 }
 
 std::shared_ptr<const raster::Texture> photograph_texture(const raster::ImageView& photograph) {

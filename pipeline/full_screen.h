@@ -1,6 +1,7 @@
 // Draws that touch every pixel of the targets: two triangles in clip space.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -14,6 +15,9 @@ raster::Draw full_screen_quad(raster::Frame& frame, std::string label);
 
 /// Depth state for such a quad: only where a surface is, and depth stays.
 raster::DepthState where_a_surface_is();
+
+/// The stencil bit that flag_counts sets.
+inline constexpr std::uint8_t kCounted = 0x80;
 
 /// Sets bit 7 and clears the others where any of the low 7 bits is set (counts become a flag).
 void flag_counts(raster::Frame& frame);

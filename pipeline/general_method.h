@@ -1,7 +1,7 @@
 // The general method (Haller 2003, section 3.1.2): an ambient pass, then for each light its shadows
 // and a pass that adds the light where there is none. Shadows are counts in the stencil buffer or a
-// shadow map, light by light as Light::shadow says (Kuehl, section 5, combined usage): each light
-// is added once, so no shadow darkens twice.
+// shadow map, light by light and object by object (Kuehl, section 5, combined usage): each light is
+// added once, where neither hides it, so no shadow darkens twice.
 #pragma once
 
 #include "pipeline/count_volumes.h"
@@ -36,7 +36,8 @@ struct GeneralOptions {
 /// Records the frame of a wholly virtual scene: every object, whatever its role, is drawn and
 /// shadowed. Labels: "ambient pass", "shadow volumes" and "lit pass", the latter two with ": LIGHT"
 /// when there are several lights, "shadow map: LIGHT", and "no volumes" where a light's stencil is
-/// only cleared. A light whose map cannot serve it (plan_shadow_map) gets volumes. Preconditions:
+/// only cleared. Where one map cannot serve a point light (plan_shadow_map) it gets six, "shadow
+/// map: LIGHT +x" and so on, unless its settings ask for one; then it gets volumes. Preconditions:
 /// all three targets; `scene` and the maps outlive the execution of the frame. After execution:
 /// colour as described, depth of the scene; the stencil is used up (a pixel that was lit is marked,
 /// so that no light adds twice where two surfaces have one depth).

@@ -74,8 +74,9 @@ class Recorder {
   }
 
   LightVolumes volumes_of(const Light& light, const Receivers& receivers,
-                          const std::optional<NearRegion>& region,
-                          const VolumeOptions& options) const {
+                          const std::optional<NearRegion>& region, VolumeOptions options) const {
+    const Casters casters(scene_, light);
+    options.casters = &casters;
     LightVolumes result;
     for (PlacedVolume& volume : make_volumes(objects_, light, receivers, region, options)) {
       const bool real = volume.caster->role == Role::phantom;
@@ -262,7 +263,8 @@ class Recorder {
       begin(haller_label::kShadowOnVirtual, &lights_[i]);
       for (const PlacedObject& object : objects_) {
         if (object.is(Role::virtual_object)) {
-          add_light(frame_, object, scene_, camera_, lights_[i], raster::BlendFactor::dst_alpha);
+          add_light(frame_, object, scene_, camera_, lights_[i],
+                    {.factor = raster::BlendFactor::dst_alpha});
         }
       }
     }

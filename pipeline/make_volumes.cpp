@@ -170,7 +170,9 @@ std::vector<PlacedVolume> make_volumes(std::span<const PlacedObject> objects, co
                                        const VolumeOptions& options) {
   std::vector<const PlacedObject*> casters;
   for (const PlacedObject& object : objects) {
-    if (object.object->casts) casters.push_back(&object);
+    const bool casts =
+        options.casters ? options.casters->contains(*object.object) : object.object->casts;
+    if (casts) casters.push_back(&object);
   }
   VolumeMemory own_memory;
   VolumeMemory& memory = options.memory ? *options.memory : own_memory;

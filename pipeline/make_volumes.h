@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/casters.h"
 #include "pipeline/near_clip.h"
 #include "pipeline/placed_object.h"
 #include "pipeline/receivers.h"
@@ -80,6 +81,8 @@ struct VolumeOptions {
   /// wrong for other meshes. Everything here that is said of counts holds for closed manifolds only
   /// then.
   bool classical = false;
+  /// Which objects cast; null: all that Object::casts says.
+  const Casters* casters = nullptr;
   /// Casters of this role are counted also where they are not in the depth buffer, so their volumes
   /// keep the front cap. All others must be in it, drawn with surface_state and their PlacedObject.
   std::optional<Role> counted_before_drawn = {};

@@ -2,6 +2,7 @@
 // (pipeline/shadow_map.h).
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include <glm/vec2.hpp>
@@ -12,11 +13,16 @@
 
 namespace gnomon::pipeline {
 
+/// One map, or one for each side of a cube about a point light; automatic: one where one serves.
+enum class MapSides : std::uint8_t { automatic, one, six };
+
 struct MapSettings {
+  MapSides sides = MapSides::automatic;
   /// Texels a side.
   std::optional<int> size;
-  /// Tangent of half a point light's angle of view about the casters' middle (1 is 90 degrees). By
-  /// itself the map gets the rectangle that casters and receivers need.
+  /// Tangent of half a point light's angle of view about the casters' middle, or a spot's axis (1
+  /// is 90 degrees); of one map. By itself the map gets the rectangle that casters and receivers
+  /// need.
   std::optional<float> fov_tangent;
   /// Near and far plane, in metres from the light; for a light at infinity, along its direction
   /// from the casters' middle.
@@ -28,6 +34,7 @@ struct MapSettings {
   raster::DepthFormat format = raster::DepthFormat::d24;
   /// Of the size that is found.
   int largest_size = 4096;
+  bool operator==(const MapSettings&) const = default;
 };
 
 }  // namespace gnomon::pipeline

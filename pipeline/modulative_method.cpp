@@ -33,10 +33,10 @@ raster::Frame record_modulative(const Scene& scene, const Camera& camera,
   const std::vector<PlacedObject> objects =
       place_objects(scene, camera, options.topologies ? *options.topologies : own_topologies);
   const std::vector<Light> lights = sample_lights(scene);
-  const VolumeOptions volume_options{.method = options.method,
-                                     .extrusion = options.extrusion,
-                                     .threads = options.threads,
-                                     .memory = options.volumes};
+  VolumeOptions volume_options{.method = options.method,
+                               .extrusion = options.extrusion,
+                               .threads = options.threads,
+                               .memory = options.volumes};
   const Receivers receivers = receivers_for(volume_options, scene);
   const std::optional<NearRegion> region = near_region(camera.clip_from_world);
 
@@ -52,6 +52,8 @@ raster::Frame record_modulative(const Scene& scene, const Camera& camera,
         surface);
   }
   for (const Light& light : lights) {
+    const Casters casters(scene, light);
+    volume_options.casters = &casters;
     frame.begin_pass("shadow volumes: " + light.name, targets);
     count_volumes(frame, make_volumes(objects, light, receivers, region, volume_options),
                   {.casters_drawn = true, .light_name = light.name});

@@ -49,7 +49,10 @@ raster::Light raster_light(const Light& light) {
   return {.position = light.position,
           .diffuse = light.color,
           .specular = light.color,
-          .attenuation = light.attenuation};
+          .attenuation = light.attenuation,
+          .spot_direction = light.spot_direction,
+          .spot_cos_cutoff = light.spot_cos_cutoff,
+          .spot_exponent = light.spot_exponent};
 }
 
 }  // namespace

@@ -46,7 +46,16 @@ struct Light {
   int samples = 1;
   /// Attenuation of a point light with distance (constant, linear, quadratic).
   glm::vec3 attenuation{1.0f, 0.0f, 0.0f};
+  /// A spot's beam: a unit vector, and the cosine of the angle to it beyond which nothing is lit;
+  /// -1 is no spot. Inside, the light falls off with the cosine to the power of `spot_exponent`. Of
+  /// a point light only.
+  glm::vec3 spot_direction{0.0f, -1.0f, 0.0f};
+  float spot_cos_cutoff = -1.0f;
+  int spot_exponent = 0;
+  /// How the shadows of all objects are found, unless `shadow_of_object` says it one by one, in the
+  /// order of Scene::objects. Methods that know volumes alone take all but `none` as volumes.
   ShadowMethod shadow = ShadowMethod::volumes;
+  std::vector<ShadowMethod> shadow_of_object = {};
   MapSettings map = {};
 };
 

@@ -70,7 +70,7 @@ TEST(ShadowMap, AFlatSheetDoesNotShadowItself) {
       for (const auto format : {raster::DepthFormat::d16, raster::DepthFormat::d24}) {
         MapSettings settings{.filter = filter, .format = format};
         if (i % 3 > 0) settings.size = i % 3 == 1 ? 37 : 512;
-        const auto plan = plan_shadow_map(scene, scene.lights[0], camera, settings);
+        const auto plan = plan_shadow_map(scene, Casters(scene), scene.lights[0], camera, settings);
         // Some sheets are too oblique for a point light's one map; they get volumes.
         if (!plan) continue;
         ++maps;
@@ -209,7 +209,7 @@ TEST(ShadowMap, IsFittedToTheCasters) {
   Scene scene = box_above_plate();
   scene.lights[0].position = {0.0f, 4.0f, 0.0f, 1.0f};
   const Camera camera = test::look({2.0f, 4.0f, 4.0f}, glm::vec3(0.0f), kWidth, kHeight);
-  const auto plan = plan_shadow_map(scene, scene.lights[0], camera, {.size = 1000});
+  const auto plan = plan_shadow_map(scene, Casters(scene), scene.lights[0], camera, {.size = 1000});
   ASSERT_TRUE(plan && !plan->empty);
   const double half = 0.3 / 3.1 * (1.0 + 4.0 / 1000.0);
   for (const float side : {-1.0f, 1.0f}) {
@@ -224,19 +224,19 @@ TEST(ShadowMap, IsFittedToTheCasters) {
 TEST(ShadowMap, IsNotNeededWhereNoVisibleReceiverIsBehindACaster) {
   const Scene scene = box_above_plate();
   const Camera away = test::look({2.0f, 0.3f, 0.0f}, {3.0f, 0.0f, 0.0f}, kWidth, kHeight);
-  const auto plan = plan_shadow_map(scene, scene.lights[0], away, {});
+  const auto plan = plan_shadow_map(scene, Casters(scene), scene.lights[0], away, {});
   ASSERT_TRUE(plan);
   EXPECT_TRUE(plan->empty);
 }
 
-// A light among its casters is served by volumes: the bytes are theirs.
+// A light among its casters for which one map is asked is served by volumes: the bytes are theirs.
 TEST(ShadowMap, LeavesALightThatItCannotServeToVolumes) {
   Scene scene = box_above_plate();
   scene.lights[0].position = {0.9f, 0.6f, 0.0f, 1.0f};
   const Camera camera = test::look({2.0f, 4.0f, 4.0f}, glm::vec3(0.0f), kWidth, kHeight);
-  EXPECT_FALSE(plan_shadow_map(scene, scene.lights[0], camera, {}));
+  EXPECT_FALSE(plan_shadow_map(scene, Casters(scene), scene.lights[0], camera, {}));
   Picture by_map, by_volumes;
-  draw(by_map, with(scene, ShadowMethod::map), camera);
+  draw(by_map, with(scene, ShadowMethod::map, {.sides = MapSides::one}), camera);
   draw(by_volumes, with(scene, ShadowMethod::volumes), camera);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
@@ -257,7 +257,7 @@ TEST(ShadowMap, AndVolumesOnTwoLightsDarkenNothingTwice) {
   Scene dark = scene, first = scene, second = scene;
   dark.lights.clear();
   first.lights.pop_back();
-  const auto plan = plan_shadow_map(scene, scene.lights[0], camera, {});
+  const auto plan = plan_shadow_map(scene, Casters(scene), scene.lights[0], camera, {});
   ASSERT_TRUE(plan && !plan->empty);
   second.lights.erase(second.lights.begin());
   Scene plate = scene;
@@ -287,7 +287,7 @@ TEST(ShadowMap, SettingsAreChecked) {
   const Scene scene = box_above_plate();
   const Camera camera = test::look({2.0f, 4.0f, 4.0f}, glm::vec3(0.0f), kWidth, kHeight);
   const auto plan = [&](const MapSettings& settings) {
-    return plan_shadow_map(scene, scene.lights[0], camera, settings);
+    return plan_shadow_map(scene, Casters(scene), scene.lights[0], camera, settings);
   };
   EXPECT_THROW(plan({.size = 0}), std::invalid_argument);
   EXPECT_THROW(plan({.size = 20000}), std::invalid_argument);

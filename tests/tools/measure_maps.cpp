@@ -114,7 +114,8 @@ std::vector<View> make_views() {
     View view{.scene = test::random_scene(random)};
     if (view.scene.lights[0].position.w != 0.0f) view.scene.lights[0].position.y += 6.0f;
     view.camera = test::look({2.0f, 4.0f, 4.0f}, glm::vec3(0.0f), kWidth, kHeight);
-    const auto plan = plan_shadow_map(view.scene, view.scene.lights[0], view.camera, {});
+    const auto plan =
+        plan_shadow_map(view.scene, Casters(view.scene), view.scene.lights[0], view.camera, {});
     if (!plan || plan->empty) continue;
     const RayReference rays(view.scene);
     view.samples = rays.cast(pixel_rays(view.camera), view.scene.lights[0].position);
@@ -143,8 +144,9 @@ void run() {
   for (const char* scale : {"0", "0.25", "0.5", "0.75", "1", "1.25", "1.5", "2", "4", "8"})
     sweep(scale, measure_each(views, [&](const View& view) {
             MapSettings settings{.size = 512};
-            settings.offset =
-                plan_shadow_map(view.scene, view.scene.lights[0], view.camera, settings)->offset;
+            settings.offset = plan_shadow_map(view.scene, Casters(view.scene), view.scene.lights[0],
+                                              view.camera, settings)
+                                  ->offset;
             settings.offset->factor = std::stof(scale);
             return settings;
           }));
