@@ -20,6 +20,9 @@ void add_golden(CLI::App& program);
 /// gnomon mesh COMMAND: is a mesh fit for shadow volumes?
 void add_mesh(CLI::App& program);
 
+/// gnomon render SCENE: a wholly virtual scene with its shadows.
+void add_render(CLI::App& program);
+
 /// gnomon replay FRAME: a recorded frame executed anew.
 void add_replay(CLI::App& program);
 

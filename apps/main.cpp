@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
       "  gnomon ar scene.toml --image photograph.png --out out --steps\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
       "  gnomon mesh check model.glb\n"
+      "  gnomon render scene.toml --out out\n"
       "  gnomon replay recorded.frame --out out\n"
       "  gnomon golden --verify\n"
       "  gnomon COMMAND --help");
@@ -45,6 +46,7 @@ int run(int argc, char** argv) {
   gnomon::apps::add_compare(program);
   gnomon::apps::add_golden(program);
   gnomon::apps::add_mesh(program);
+  gnomon::apps::add_render(program);
   gnomon::apps::add_replay(program);
 
   try {

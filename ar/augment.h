@@ -12,6 +12,7 @@
 
 #include "ar/camera.h"
 #include "ar/image.h"
+#include "ar/pass_pictures.h"
 #include "ar/pinhole_view.h"
 #include "pipeline/haller.h"
 #include "pipeline/scene.h"
@@ -36,17 +37,6 @@ struct AugmentOptions {
   bool frame = false;
 };
 
-/// The buffers after a pass, in the photograph's geometry.
-struct PassPictures {
-  std::string label;
-  Image color, depth, stencil;
-};
-
-struct PassNote {
-  std::string label;
-  std::size_t commands = 0;
-};
-
 struct Augmented {
   Image composite;
   /// One channel, 255 or 0: a virtual shadow darkens a real surface; a real object's shadow falls
@@ -55,6 +45,7 @@ struct Augmented {
   /// The counts of all volumes (step 3, first light) in false colour with a legend. Empty unless
   /// asked for.
   Image stencil_counts;
+  /// In the photograph's geometry.
   std::vector<PassPictures> steps;
   std::vector<PassNote> passes;
   /// As encode_frame writes it (docs/frame-format.md). Empty unless asked for.

@@ -16,7 +16,9 @@ std::vector<T> rows_from_top(const std::vector<T>& from_bottom, int width, int h
   return rows;
 }
 
-Image picture(const raster::ColorBuffer& color) {
+}  // namespace
+
+Image buffer_picture(const raster::ColorBuffer& color) {
   const std::vector<std::uint8_t> rgba =
       rows_from_top(color.to_rgba8_rows(), 4 * color.width(), color.height());
   Image out{color.width(), color.height(), 3, {}};
@@ -26,21 +28,19 @@ Image picture(const raster::ColorBuffer& color) {
   return out;
 }
 
-Image picture(const raster::DepthBuffer& depth) {
+Image buffer_picture(const raster::DepthBuffer& depth) {
   return depth_picture(depth.width(), depth.height(),
                        rows_from_top(depth.to_rows(), depth.width(), depth.height()),
                        depth.max_value());
 }
 
-Image picture(const raster::StencilBuffer& stencil) {
+Image buffer_picture(const raster::StencilBuffer& stencil) {
   return stencil_picture(stencil.width(), stencil.height(),
                          rows_from_top(stencil.to_rows(), stencil.width(), stencil.height()));
 }
 
-}  // namespace
-
 Image buffer_picture(const raster::Buffer& buffer) {
-  return std::visit([](const auto& plane) { return picture(plane); }, buffer);
+  return std::visit([](const auto& plane) { return buffer_picture(plane); }, buffer);
 }
 
 }  // namespace gnomon::ar

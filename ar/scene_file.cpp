@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 #include <map>
 #include <set>
@@ -15,8 +12,11 @@
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/gltf.h"
+#include "ar/map_keys.h"
 #include "ar/model_file.h"
+#include "ar/toml_pose.h"
 #include "ar/toml_table.h"
+#include "raster/frame.h"
 
 namespace gnomon::ar {
 
@@ -25,67 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxSceneBytes = 1 << 20;
-constexpr double kMaxMetres = 1e6;
 constexpr int kMaxTagNumber = 1'000'000;
 constexpr int kMaxSamples = 1024;
-/// Matrices written with six digits are still rotations.
-constexpr double kRigidTolerance = 1e-5;
-
-bool is_rotation(const glm::dmat3& r) {
-  const glm::dmat3 product = glm::transpose(r) * r;
-  for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < 3; ++k)
-      if (std::abs(product[c][k] - (c == k ? 1.0 : 0.0)) > kRigidTolerance) return false;
-  return glm::determinant(r) > 0.0;
-}
-
-/// R = Rz * Ry * Rx: first about x, then about y, then about z, axes fixed.
-glm::dmat3 rotation_from_degrees(glm::dvec3 degrees) {
-  const glm::dvec3 a = glm::radians(degrees);
-  return glm::mat3_cast(glm::angleAxis(a.z, glm::dvec3(0, 0, 1)) *
-                        glm::angleAxis(a.y, glm::dvec3(0, 1, 0)) *
-                        glm::angleAxis(a.x, glm::dvec3(1, 0, 0)));
-}
-
-glm::dmat3 read_rotation(const TomlTable& t) {
-  if (t.has("rotation_deg") && t.has("quaternion"))
-    t.fail("quaternion", "together with rotation_deg: give one of them");
-  if (const auto degrees = t.vector("rotation_deg", -3600.0, 3600.0))
-    return rotation_from_degrees(*degrees);
-  if (const auto q = t.numbers("quaternion", 4)) {
-    const glm::dquat value((*q)[3], (*q)[0], (*q)[1], (*q)[2]);
-    if (std::abs(glm::length(value) - 1.0) > kRigidTolerance)
-      t.fail("quaternion", fmt::format("has length {}, not 1", glm::length(value)));
-    return glm::mat3_cast(glm::normalize(value));
-  }
-  return glm::dmat3(1.0);
-}
-
-/// A pose under `matrix_key`, or from position_m with rotation_deg or quaternion. With `scalable`,
-/// the matrix may scale and there may be a scale. Absent keys are the identity.
-glm::dmat4 read_pose(const TomlTable& t, std::string_view matrix_key, bool scalable) {
-  if (const auto matrix = t.matrix(matrix_key)) {
-    for (const char* key : {"position_m", "rotation_deg", "quaternion", "scale"})
-      if (t.has(key)) t.fail(key, fmt::format("together with {}: give one of them", matrix_key));
-    const glm::dmat3 linear(*matrix);
-    if (!scalable && !is_rotation(linear))
-      t.fail(matrix_key, fmt::format("is not a rotation and translation (determinant {})",
-                                     glm::determinant(linear)));
-    if (glm::determinant(linear) < 1e-12)
-      t.fail(matrix_key,
-             fmt::format("mirrors or flattens (determinant {})", glm::determinant(linear)));
-    return *matrix;
-  }
-  glm::dmat4 pose(read_rotation(t));
-  if (scalable)
-    if (const auto scale = t.number("scale", 1e-4, 1e4))
-      pose = glm::dmat4(glm::dmat3(pose) * *scale);
-  const glm::dvec3 position =
-      t.vector("position_m", -kMaxMetres, kMaxMetres).value_or(glm::dvec3(0.0));
-  pose[3] = glm::dvec4(position, 1.0);
-  return pose;
-}
-
 class SceneReader {
  public:
   explicit SceneReader(const fs::path& path) { scene_.file = path; }
@@ -102,9 +43,10 @@ class SceneReader {
     }
     // Before the keys: another format has other keys.
     check_format(root);
-    const TomlTable top(scene_.file, root, "",
-                        {"format", "ambient", "camera", "detection", "dictionary", "tag",
-                         "tags_yaml", "body", "object", "light", "shadow", "filter"});
+    const TomlTable top(
+        scene_.file, root, "",
+        {"format", "ambient", "camera", "detection", "dictionary", "tag", "tags_yaml", "body",
+         "group", "object", "light", "caster", "shadow", "filter"});
     if (const auto ambient = top.vector("ambient", 0.0, 1.0)) scene_.ambient = *ambient;
     read_camera_table(top);
     for (const toml::table* t : top.tables("dictionary")) read_dictionary(*t);
@@ -113,8 +55,10 @@ class SceneReader {
       scene_.tags.world.tags.push_back(read_tag(*t, "tag", "world_from_tag"));
     for (const toml::table* t : top.tables("body")) read_body(*t);
     read_tags_yaml_table(top);
+    for (const toml::table* t : top.tables("group")) read_group(*t);
     for (const toml::table* t : top.tables("object")) read_object(*t);
     for (const toml::table* t : top.tables("light")) read_light(*t);
+    for (const toml::table* t : top.tables("caster")) read_caster(*t);
     read_shadow(top);
     read_filter(top);
     check_whole(root);
@@ -145,22 +89,46 @@ class SceneReader {
 
   void read_camera_table(const TomlTable& top) {
     const toml::table* table = top.table("camera");
-    if (table == nullptr) top.fail("camera", "missing");
+    if (table == nullptr) return;
     const TomlTable t(scene_.file, *table, "[camera]",
-                      {"file", "near_m", "far_m", "world_from_camera", "axes"});
-    scene_.camera_file = t.required("file", t.file("file"));
+                      {"file", "width", "height", "fov_y_deg", "near_m", "far_m",
+                       "world_from_camera", "axes", "eye_m", "target_m", "up"});
+    if (t.has("file") && t.has("fov_y_deg"))
+      t.fail("fov_y_deg", "together with file: give one of them");
+    if (t.has("fov_y_deg") || !t.has("file"))
+      scene_.pinhole = read_pinhole(t);
+    else
+      scene_.camera_file = *t.file("file");
     scene_.near_m = t.number("near_m", 1e-4, kMaxMetres).value_or(scene_.near_m);
     scene_.far_m = t.number("far_m", 1e-3, kMaxMetres).value_or(scene_.far_m);
     if (scene_.far_m <= scene_.near_m)
       t.fail(t.has("far_m") ? "far_m" : "near_m",
              fmt::format("far_m {} is not beyond near_m {}", scene_.far_m, scene_.near_m));
+    read_camera_pose(t);
+  }
+
+  static CameraModel read_pinhole(const TomlTable& t) {
+    if (!t.has("fov_y_deg")) t.fail("file", "missing: give file, or fov_y_deg with width, height");
+    CameraModel camera;
+    camera.width = t.integer("width", 1, raster::kMaxTargetSize).value_or(640);
+    camera.height = t.integer("height", 1, raster::kMaxTargetSize).value_or(480);
+    const double fov = glm::radians(*t.number("fov_y_deg", 1.0, 170.0));
+    camera.fx = camera.fy = camera.height / (2.0 * std::tan(fov / 2.0));
+    camera.cx = (camera.width - 1) / 2.0;
+    camera.cy = (camera.height - 1) / 2.0;
+    return camera;
+  }
+
+  void read_camera_pose(const TomlTable& t) {
+    const bool looks = t.has("eye_m") || t.has("target_m") || t.has("up");
+    if (looks && t.has("world_from_camera"))
+      t.fail("world_from_camera", "together with eye_m and target_m: give one of them");
+    if (t.has("axes") && !t.has("world_from_camera")) t.fail("axes", "without world_from_camera");
+    if (looks) scene_.world_from_camera = read_look_at(t);
+    if (!t.has("world_from_camera")) return;
     const std::string axes = t.text("axes").value_or("opencv");
     if (axes != "opencv" && axes != "opengl")
       t.fail("axes", fmt::format("'{}' is not one of opencv, opengl", axes));
-    if (!t.has("world_from_camera")) {
-      if (t.has("axes")) t.fail("axes", "without world_from_camera");
-      return;
-    }
     glm::dmat4 pose = read_pose(t, "world_from_camera", false);
     if (axes == "opengl") {
       pose[1] = -pose[1];
@@ -251,9 +219,36 @@ class SceneReader {
     scene_.tags_yaml = yaml;
   }
 
+  /// The body or group that a thing hangs on; empty for the world.
+  std::string read_attachment(const TomlTable& t) const {
+    const std::string to = t.text("attached_to").value_or("world");
+    // A tags.yaml brings bodies of its own.
+    if (to != "world" && !body_names_.contains(to) && !group_names_.contains(to) &&
+        !scene_.tags_yaml)
+      t.fail("attached_to",
+             fmt::format("'{}' is neither world nor a [[body]] nor a [[group]] above", to));
+    return to == "world" ? "" : to;
+  }
+
+  void read_group(const toml::table& table) {
+    const TomlTable t(scene_.file, table, place_of(table, "group"),
+                      {"name", "attached_to", "parent_from_group", "position_m", "rotation_deg",
+                       "quaternion", "scale"});
+    SceneGroup group;
+    // Before its own name is known: a group does not hang on itself, nor on one below it.
+    group.attached_to = read_attachment(t);
+    group.name = unique_name(t, group_names_);
+    if (group.name == "world" || body_names_.contains(group.name))
+      t.fail("name", fmt::format("'{}' is the world's or a [[body]]'s", group.name));
+    group.parent_from_group = read_pose(t, "parent_from_group", true);
+    scene_.groups.push_back(std::move(group));
+  }
+
   void read_object(const toml::table& table) {
-    const bool on_body = table["attached_to"].value<std::string>().value_or("world") != "world";
-    const std::string_view matrix_key = on_body ? "body_from_object" : "world_from_object";
+    const std::string on = table["attached_to"].value<std::string>().value_or("world");
+    const std::string_view matrix_key = on == "world"               ? "world_from_object"
+                                        : group_names_.contains(on) ? "group_from_object"
+                                                                    : "body_from_object";
     const TomlTable t(scene_.file, table, place_of(table, "object"),
                       {"name", "role", "model", "attached_to", matrix_key, "position_m",
                        "rotation_deg", "quaternion", "scale", "casts", "receives"});
@@ -264,11 +259,7 @@ class SceneReader {
       t.fail("role", fmt::format("'{}' is not one of virtual, phantom", role));
     object.role = role == "phantom" ? pipeline::Role::phantom : pipeline::Role::virtual_object;
     object.model = t.required("model", t.file("model"));
-    const std::string body = t.text("attached_to").value_or("world");
-    // A tags.yaml brings bodies of its own.
-    if (body != "world" && !body_names_.contains(body) && !scene_.tags_yaml)
-      t.fail("attached_to", fmt::format("'{}' is neither world nor a [[body]]", body));
-    if (body != "world") object.attached_to = body;
+    object.attached_to = read_attachment(t);
     object.body_from_object = read_pose(t, matrix_key, true);
     object.casts = t.boolean("casts").value_or(true);
     object.receives = t.boolean("receives").value_or(true);
@@ -300,7 +291,8 @@ class SceneReader {
   void read_light(const toml::table& table) {
     const TomlTable t(scene_.file, table, place_of(table, "light"),
                       {"name", "position_m", "direction_towards", "node", "model", "color", "share",
-                       "radius_m", "radius_deg", "samples", "attenuation"});
+                       "radius_m", "radius_deg", "samples", "attenuation", "attached_to",
+                       "spot_deg", "spot_direction", "spot_exponent"});
     pipeline::Light light;
     light.name = unique_name(t, light_names_);
     light.position = read_light_position(t);
@@ -321,7 +313,42 @@ class SceneReader {
       if (*attenuation == glm::dvec3(0.0)) t.fail("attenuation", "is 0 throughout");
       light.attenuation = *attenuation;
     }
+    read_spot(t, light);
+    scene_.light_attached_to.push_back(read_attachment(t));
     scene_.lights.push_back(std::move(light));
+  }
+
+  static void read_spot(const TomlTable& t, pipeline::Light& light) {
+    if (!t.has("spot_deg")) {
+      for (const char* key : {"spot_direction", "spot_exponent"})
+        if (t.has(key)) t.fail(key, "without spot_deg");
+      return;
+    }
+    if (light.position.w == 0.0f) t.fail("spot_deg", "a light at infinity is no spot");
+    light.spot_cos_cutoff =
+        static_cast<float>(std::cos(glm::radians(*t.number("spot_deg", 0.1, 90.0))));
+    const glm::dvec3 direction =
+        t.required("spot_direction", t.vector("spot_direction", -kMaxMetres, kMaxMetres));
+    if (!(glm::length(direction) > 1e-9)) t.fail("spot_direction", "has no length");
+    light.spot_direction = glm::vec3(glm::normalize(direction));
+    light.spot_exponent = t.integer("spot_exponent", 0, 128).value_or(0);
+  }
+
+  void read_caster(const toml::table& table) {
+    const TomlTable t(scene_.file, table, "[caster]",
+                      {"node", "light", "method", "size", "sides", "fov_deg", "near_m", "far_m",
+                       "displace_scale", "displace_offset", "filter", "depth_bits"});
+    SceneCaster caster;
+    caster.node = t.text("node").value_or("");
+    if (!caster.node.empty() && !object_names_.contains(caster.node) &&
+        !group_names_.contains(caster.node) && !body_names_.contains(caster.node))
+      t.fail("node", fmt::format("'{}' is no [[object]], [[group]] or [[body]]", caster.node));
+    caster.light = t.text("light").value_or("");
+    if (!caster.light.empty() && !light_names_.contains(caster.light))
+      t.fail("light", fmt::format("'{}' is no [[light]]", caster.light));
+    caster.method = read_shadow_method(t);
+    caster.map = read_map_settings(t, caster.method);
+    scene_.casters.push_back(std::move(caster));
   }
 
   void read_shadow(const TomlTable& top) {
@@ -364,20 +391,27 @@ class SceneReader {
   void check_whole(const toml::table& root) {
     if (scene_.objects.empty()) fail_at(scene_.file, root, "object: missing: nothing to draw");
     if (scene_.lights.empty()) fail_at(scene_.file, root, "light: missing: no light, no shadow");
-    if (!scene_.world_from_camera && tags_.empty() && !scene_.tags_yaml)
-      fail_at(scene_.file, root,
-              "tag: missing: without tags the camera needs [camera].world_from_camera");
   }
 
   SceneFile scene_;
   bool families_given_ = false;
-  std::set<std::string> dictionary_names_, body_names_, object_names_, light_names_;
+  std::set<std::string> dictionary_names_, body_names_, group_names_, object_names_, light_names_;
   std::set<TagId> tags_;
 };
 
 }  // namespace
 
 SceneFile read_scene(const fs::path& path) { return SceneReader(path).read(); }
+
+void require_photograph(const SceneFile& scene) {
+  const std::string file = one_line(scene.file.string());
+  if (scene.camera_file.empty() && !scene.pinhole)
+    throw InputError(fmt::format("{}: camera: missing", file));
+  const bool tags = !scene.tags.world.tags.empty() || !scene.tags.bodies.empty();
+  if (!scene.world_from_camera && !tags && !scene.tags_yaml)
+    throw InputError(fmt::format(
+        "{}: tag: missing: without tags the camera needs [camera].world_from_camera", file));
+}
 
 std::vector<std::shared_ptr<const pipeline::Model>> load_models(const SceneFile& scene,
                                                                 std::vector<std::string>* notes) {

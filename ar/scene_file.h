@@ -14,8 +14,10 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "ar/camera.h"
 #include "ar/tag_layout.h"
 #include "ar/tags.h"
+#include "pipeline/map_settings.h"
 #include "pipeline/mesh.h"
 #include "pipeline/scene.h"
 
@@ -24,13 +26,31 @@ namespace gnomon::ar {
 /// What a scene file says it is, and what this reader accepts.
 inline constexpr const char* kSceneFormat = "gnomon-scene 1";
 
+/// A place that others hang on.
+struct SceneGroup {
+  std::string name;
+  /// A body, or a group before it; empty for the world.
+  std::string attached_to;
+  glm::dmat4 parent_from_group{1.0};
+};
+
+/// Who casts a light's shadow, and how it is found (pipeline::Shadow).
+struct SceneCaster {
+  /// An object, a group or a body; empty: everything.
+  std::string node;
+  /// Empty: every light.
+  std::string light;
+  pipeline::ShadowMethod method = pipeline::ShadowMethod::volumes;
+  pipeline::MapSettings map;
+};
+
 struct SceneObject {
   std::string name;
   pipeline::Role role = pipeline::Role::virtual_object;
   std::filesystem::path model;
-  /// The body that carries it; empty for the world.
+  /// The body or group that carries it; empty for the world.
   std::string attached_to;
-  /// Pose and scale; the body is the world if attached_to is empty. Never mirrors.
+  /// Pose and scale in what carries it. Never mirrors.
   glm::dmat4 body_from_object{1.0};
   bool casts = true, receives = true;
 };
@@ -68,7 +88,9 @@ struct TagsYaml {
 struct SceneFile {
   std::filesystem::path file;
 
+  /// A calibration file, or a camera without one; neither where the scene has no [camera].
   std::filesystem::path camera_file;
+  std::optional<CameraModel> pinhole;
   double near_m = 0.02, far_m = 100.0;
   /// A fixed camera in OpenCV's axes (x right, y down, z forward), used instead of tags.
   std::optional<glm::dmat4> world_from_camera;
@@ -82,8 +104,12 @@ struct SceneFile {
   TagLayout tags;
   std::optional<TagsYaml> tags_yaml;
 
+  std::vector<SceneGroup> groups;
   std::vector<SceneObject> objects;
+  /// In the space of what carries them, which is named one by one as in SceneObject.
   std::vector<pipeline::Light> lights;
+  std::vector<std::string> light_attached_to;
+  std::vector<SceneCaster> casters;
   glm::vec3 ambient{0.3f};
   ShadowSettings shadow;
   FilterSettings filter;
@@ -93,6 +119,9 @@ struct SceneFile {
 /// Throws InputError "FILE:LINE: [TABLE 'NAME'].KEY: what is wrong". Reads the models that lights
 /// take a node from, no others.
 SceneFile read_scene(const std::filesystem::path& path);
+
+/// Throws InputError unless the scene can be put into a photograph: a camera, and tags or a pose.
+void require_photograph(const SceneFile& scene);
 
 /// The model of each object, in the order of scene.objects; a file that several objects name is
 /// read once and shared. Notes of the reader go to `notes` if given. Throws InputError.

@@ -7,30 +7,13 @@
 #include "ar/camera.h"
 #include "ar/error.h"
 #include "ar/response.h"
+#include "ar/scene_nodes.h"
+#include "ar/shadow_settings.h"
 #include "ar/tag_layout_file.h"
 
 namespace gnomon::ar {
 
 namespace {
-
-pipeline::VolumeMethod volume_method(ShadowMethod method) {
-  switch (method) {
-    case ShadowMethod::zpass:
-      return pipeline::VolumeMethod::zpass;
-    case ShadowMethod::zfail:
-      return pipeline::VolumeMethod::zfail;
-    case ShadowMethod::automatic:
-      break;
-  }
-  return pipeline::VolumeMethod::automatic;
-}
-
-pipeline::Extrusion extrusion(const VolumeReach& reach) {
-  using Kind = pipeline::Extrusion::Kind;
-  if (const double* radius_m = std::get_if<double>(&reach))
-    return {Kind::radius, static_cast<float>(*radius_m)};
-  return {std::holds_alternative<InfiniteReach>(reach) ? Kind::infinite : Kind::automatic};
-}
 
 AugmentOptions augment_options(const SceneFile& file, const SessionOptions& options) {
   AugmentOptions out;
@@ -48,10 +31,13 @@ AugmentOptions augment_options(const SceneFile& file, const SessionOptions& opti
 }
 
 CameraModel camera_of(const SceneFile& file, int width, int height) {
+  require_photograph(file);
   try {
+    if (file.pinhole) return camera_for_picture(*file.pinhole, width, height);
     return camera_for_picture(read_camera(file.camera_file), width, height);
   } catch (const InputError& error) {
-    const std::string what = error.what(), name = file.camera_file.string();
+    const std::string what = error.what();
+    const std::string name = (file.pinhole ? file.file : file.camera_file).string();
     if (what.starts_with(name)) throw;
     throw InputError(name + ": " + what);
   }
@@ -78,7 +64,7 @@ struct Session::Impl {
   Augmenter augmenter;
   std::optional<Tracker> tracker;
   std::vector<std::string> notes;
-  std::vector<std::shared_ptr<const pipeline::Model>> models;
+  std::optional<SceneNodes> nodes;
 
   Impl(const SceneFile& scene_file, int width, int height, const SessionOptions& options)
       : file(scene_file),
@@ -91,7 +77,7 @@ struct Session::Impl {
     if (std::ranges::none_of(file.objects, is_virtual))
       throw InputError(file.file.string() +
                        ": [[object]]: none has role = \"virtual\", so there is nothing to draw");
-    models = load_models(file, &notes);
+    nodes.emplace(file, load_models(file, &notes));
     if (file.tags_yaml) add_bundles(*file.tags_yaml);
     check_bodies();
     if (!layout.world.tags.empty() || !layout.bodies.empty())
@@ -107,18 +93,16 @@ struct Session::Impl {
 
   /// Bodies of a ROS file are only known here; the scene file's own were checked by its reader.
   void check_bodies() const {
-    for (const SceneObject& object : file.objects) {
-      const auto named = [&](const TaggedBody& body) { return body.name == object.attached_to; };
-      if (!object.attached_to.empty() && std::ranges::none_of(layout.bodies, named))
-        throw InputError(file.file.string() + ": [object '" + object.name +
-                         "'].attached_to: there is no body '" + object.attached_to + "'");
+    for (const std::string& name : nodes->bodies()) {
+      const auto named = [&](const TaggedBody& body) { return body.name == name; };
+      if (std::ranges::none_of(layout.bodies, named))
+        throw InputError(file.file.string() + ": attached_to: there is no body '" + name + "'");
     }
   }
 
   /// The pose of the body with this name in the world.
   std::optional<glm::dmat4> world_from_body(const SessionResult& result,
                                             const std::string& name) const {
-    if (name.empty()) return glm::dmat4(1.0);
     const auto body = std::find_if(result.track.bodies.begin(), result.track.bodies.end(),
                                    [&](const BodyTrack& b) { return b.name == name; });
     if (body == result.track.bodies.end()) return std::nullopt;
@@ -127,20 +111,11 @@ struct Session::Impl {
     return *file.world_from_camera * *body->camera_from_body;
   }
 
-  void place(SessionResult& result) const {
-    result.scene.lights = file.lights;
-    result.scene.ambient = file.ambient;
-    for (std::size_t i = 0; i < file.objects.size(); ++i) {
-      const SceneObject& object = file.objects[i];
-      const std::optional<glm::dmat4> body = world_from_body(result, object.attached_to);
-      if (!body) {
-        result.left_out.push_back(object.name);
-        continue;
-      }
-      result.scene.objects.push_back({object.name, object.role, models[i],
-                                      glm::mat4(*body * object.body_from_object), object.casts,
-                                      object.receives});
-    }
+  void place(SessionResult& result) {
+    for (const std::string& body : nodes->bodies())
+      nodes->place(body, world_from_body(result, body));
+    result.scene = nodes->scene();
+    result.left_out = nodes->left_out();
   }
 };
 

@@ -56,19 +56,31 @@ bool passes(const Path& path, const NodePointer& node) {
 class Flattener {
  public:
   Scene flatten(const Node& root) {
-    walk(root, glm::dmat4(1.0));
+    walk(root, glm::dmat4(1.0), true);
     for (const Node* shadow : shadows_) check(*shadow);
     for (std::size_t light = 0; light < scene_.lights.size(); ++light) give_shadows(light);
     return std::move(scene_);
   }
 
  private:
-  void walk(const Node& node, const glm::dmat4& world_from_parent) {
+  /// `on`: is everything above?
+  void walk(const Node& node, const glm::dmat4& world_from_parent, bool on) {
     if (std::ranges::find(path_, &node) != path_.end()) refuse(node, "it contains itself");
     if (path_.size() == kDeepest) refuse(node, "it lies more than 1000 nodes deep");
     require_transform(node);
     const glm::dmat4 world_from_node = world_from_parent * node.parent_from_node;
     path_.push_back(&node);
+    nodes_.push_back(&node);
+    on = on && node.on;
+    if (on) add(node, world_from_node);
+    for (const NodePointer& child : node.children) {
+      if (!child) refuse(node, "a child is null");
+      walk(*child, world_from_node, on);
+    }
+    path_.pop_back();
+  }
+
+  void add(const Node& node, const glm::dmat4& world_from_node) {
     if (const auto* geometry = std::get_if<Geometry>(&node.content)) {
       if (!geometry->model) refuse(node, "a geometry has a model");
       scene_.objects.push_back({node.name, geometry->role, geometry->model,
@@ -80,12 +92,6 @@ class Flattener {
     } else if (std::holds_alternative<Shadow>(node.content)) {
       shadows_.push_back(&node);
     }
-    nodes_.push_back(&node);
-    for (const NodePointer& child : node.children) {
-      if (!child) refuse(node, "a child is null");
-      walk(*child, world_from_node);
-    }
-    path_.pop_back();
   }
 
   bool in_graph(const NodePointer& node) const {

@@ -52,6 +52,8 @@ struct Node {
   glm::dmat4 parent_from_node{1.0};
   std::variant<std::monostate, Geometry, LightSource, Shadow> content;
   std::vector<NodePointer> children;
+  /// Off: neither the node nor what hangs below it is in the scene (Performer's switch).
+  bool on = true;
 };
 
 NodePointer make_node(std::string name, const glm::dmat4& parent_from_node = glm::dmat4(1.0));

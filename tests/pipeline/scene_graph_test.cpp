@@ -161,6 +161,16 @@ TEST(SceneGraph, OnlyTheCasterOfAShadowNodeDarkens) {
   }
 }
 
+TEST(SceneGraph, WhatIsOffIsNotThere) {
+  Graph graph;
+  graph.root->children.push_back(shadow(graph.group, nullptr, ShadowMethod::map));
+  graph.group->on = false;
+  const Scene scene = flatten(*graph.root);
+  ASSERT_EQ(scene.objects.size(), 1u);
+  EXPECT_EQ(scene.objects[0].name, "plate");
+  EXPECT_EQ(scene.lights[0].shadow_of_object, (std::vector{ShadowMethod::none}));
+}
+
 TEST(SceneGraph, SpotsTurnWithTheirNode) {
   Graph graph;
   Light& light = std::get<LightSource>(graph.lamp1->content).light;
