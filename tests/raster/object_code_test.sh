@@ -10,12 +10,13 @@ check="$1" library="$2" objdump="$3"
 
 code() { "$objdump" --disassemble --no-show-raw-insn "$library"; }
 
-# Prints "member function: instruction" for each instruction whose name matches.
+# Prints "member function: instruction" for each instruction whose name matches. Reads what the
+# disassemblers of binutils and LLVM print.
 instructions() {
   awk -v pattern="^($1)" '
-    / file format / { member = $1 }
+    /[ \t]file format / { member = $1 }
     /^[0-9a-f]+ <.*>:$/ { name = substr($2, 2, length($2) - 3) }
-    /^ +[0-9a-f]+:\t/ {
+    /^ +[0-9a-f]+: *\t/ {
       ++seen
       split($0, part, "\t")
       if (part[2] ~ pattern) print member, name ": " part[2]
