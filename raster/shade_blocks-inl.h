@@ -70,13 +70,34 @@ HWY_INLINE bool any_pixel(PixelMask mask, std::size_t i, std::size_t lanes) {
   return (mask >> i & (~PixelMask{0} >> (kPixels - lanes))) != 0;
 }
 
-/// Perspective-correct weights of the mesh triangle's vertices in block b, three planes of 64.
+/// Perspective-correct weights of the mesh triangle's vertices from the scaled edges of as many
+/// pixels as there are lanes; they go to places i and on of three planes.
+template <class V, std::size_t kCount>
+HWY_INLINE void store_weights(const TileWeights& w, V q0, V q1, V q2, std::size_t i,
+                              float (&planes)[3][kCount]) {
+  const hn::DFromV<V> d;
+  const hn::Rebind<float, decltype(d)> single_d;
+  const V inverse = hn::Div(hn::Set(d, 1.0), hn::Add(hn::Add(q0, q1), q2));
+  const V w0 = hn::Mul(q0, inverse), w1 = hn::Mul(q1, inverse), w2 = hn::Mul(q2, inverse);
+  if (!w.is_piece) {
+    hn::StoreU(hn::DemoteTo(single_d, w0), single_d, planes[w.order[0]] + i);
+    hn::StoreU(hn::DemoteTo(single_d, w1), single_d, planes[w.order[1]] + i);
+    hn::StoreU(hn::DemoteTo(single_d, w2), single_d, planes[w.order[2]] + i);
+    return;
+  }
+  for (std::size_t v = 0; v < 3; ++v) {
+    const V weight = hn::Add(
+        hn::Add(hn::Mul(hn::Set(d, w.piece[0][v]), w0), hn::Mul(hn::Set(d, w.piece[1][v]), w1)),
+        hn::Mul(hn::Set(d, w.piece[2][v]), w2));
+    hn::StoreU(hn::DemoteTo(single_d, weight), single_d, planes[v] + i);
+  }
+}
+
+/// The weights of block b's pixels.
 HWY_INLINE void block_weights(const TileWeights& w, std::size_t b, PixelMask mask,
                               float (&planes)[3][kPixels]) {
   const hn::CappedTag<double, kWidth> d;
-  const hn::Rebind<float, decltype(d)> single_d;
   const auto x0 = static_cast<double>(b % 8 * 8), y0 = static_cast<double>(b / 8 * 8);
-  const auto one = hn::Set(d, 1.0);
   const VectorRange range = vectors_of(d, mask);
   for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
     if (!any_pixel(mask, i, hn::Lanes(d))) continue;
@@ -87,21 +108,7 @@ HWY_INLINE void block_weights(const TileWeights& w, std::size_t b, PixelMask mas
       const auto edge = hn::Add(first, hn::Mul(x, hn::Set(d, w.step_x[k])));
       return hn::Mul(edge, hn::Set(d, w.scale[k]));
     };
-    const auto q0 = scaled_edge(0), q1 = scaled_edge(1), q2 = scaled_edge(2);
-    const auto inverse = hn::Div(one, hn::Add(hn::Add(q0, q1), q2));
-    const auto w0 = hn::Mul(q0, inverse), w1 = hn::Mul(q1, inverse), w2 = hn::Mul(q2, inverse);
-    if (!w.is_piece) {
-      hn::StoreU(hn::DemoteTo(single_d, w0), single_d, planes[w.order[0]] + i);
-      hn::StoreU(hn::DemoteTo(single_d, w1), single_d, planes[w.order[1]] + i);
-      hn::StoreU(hn::DemoteTo(single_d, w2), single_d, planes[w.order[2]] + i);
-      continue;
-    }
-    for (std::size_t v = 0; v < 3; ++v) {
-      const auto weight = hn::Add(
-          hn::Add(hn::Mul(hn::Set(d, w.piece[0][v]), w0), hn::Mul(hn::Set(d, w.piece[1][v]), w1)),
-          hn::Mul(hn::Set(d, w.piece[2][v]), w2));
-      hn::StoreU(hn::DemoteTo(single_d, weight), single_d, planes[v] + i);
-    }
+    store_weights(w, scaled_edge(0), scaled_edge(1), scaled_edge(2), i, planes);
   }
 }
 
@@ -202,6 +209,25 @@ HWY_INLINE Vector3 lit_color(const TileShading& s, VF32 p0, VF32 p1, VF32 p2, co
   return color;
 }
 
+struct Rgba {
+  Vector3 rgb;
+  VF32 alpha;
+};
+
+/// The colours of as many pixels as there are lanes, from their weights.
+HWY_INLINE Rgba colors_of(const TileShading& s, VF32 p0, VF32 p1, VF32 p2) {
+  const auto base = [&](std::size_t c) HWY_ATTR {
+    return s.has_colors ? weighted(s.colors[0][c], s.colors[1][c], s.colors[2][c], p0, p1, p2)
+                        : set(1.0f);
+  };
+  const Vector3 rgb{base(0), base(1), base(2)};
+  const VF32 alpha = base(3);
+  const Vector3 color =
+      s.lit ? lit_color(s, p0, p1, p2, rgb)
+            : mul({set(s.flat_color[0]), set(s.flat_color[1]), set(s.flat_color[2])}, rgb);
+  return {color, hn::Mul(set(s.lit ? s.lit->material_alpha : s.flat_color[3]), alpha)};
+}
+
 void shade_block(const TileShading& s, std::size_t b, PixelMask mask, float* colors) noexcept {
   const DF32 d;
   alignas(64) float planes[3][kPixels];
@@ -215,54 +241,121 @@ void shade_block(const TileShading& s, std::size_t b, PixelMask mask, float* col
   const VectorRange range = vectors_of(d, mask);
   for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
     if (!any_pixel(mask, i, hn::Lanes(d))) continue;
-    const VF32 p0 = hn::Load(d, planes[0] + i), p1 = hn::Load(d, planes[1] + i),
-               p2 = hn::Load(d, planes[2] + i);
-    const auto base = [&](std::size_t c) HWY_ATTR {
-      return s.has_colors ? weighted(s.colors[0][c], s.colors[1][c], s.colors[2][c], p0, p1, p2)
-                          : set(1.0f);
-    };
-    const Vector3 rgb{base(0), base(1), base(2)};
-    const VF32 alpha = base(3);
-    const Vector3 color =
-        s.lit ? lit_color(s, p0, p1, p2, rgb)
-              : mul({set(s.flat_color[0]), set(s.flat_color[1]), set(s.flat_color[2])}, rgb);
-    hn::StoreU(color.x, d, colors + i);
-    hn::StoreU(color.y, d, colors + kPixels + i);
-    hn::StoreU(color.z, d, colors + 2 * kPixels + i);
-    hn::StoreU(hn::Mul(set(s.lit ? s.lit->material_alpha : s.flat_color[3]), alpha), d,
-               colors + 3 * kPixels + i);
+    const Rgba color = colors_of(s, hn::Load(d, planes[0] + i), hn::Load(d, planes[1] + i),
+                                 hn::Load(d, planes[2] + i));
+    hn::StoreU(color.rgb.x, d, colors + i);
+    hn::StoreU(color.rgb.y, d, colors + kPixels + i);
+    hn::StoreU(color.rgb.z, d, colors + 2 * kPixels + i);
+    hn::StoreU(color.alpha, d, colors + 3 * kPixels + i);
   }
+}
+
+HWY_INLINE VU32 to_unorm8(VF32 value) {
+  const DF32 d;
+  // NaN is not greater than 0.
+  const VF32 positive = hn::IfThenElseZero(hn::Gt(value, hn::Zero(d)), value);
+  const VF32 scaled = hn::Mul(hn::Min(positive, set(1.0f)), set(255.0f));
+  return hn::BitCast(DU32(), hn::NearestInt(scaled));
+}
+
+HWY_INLINE VU32 to_rgba8(const Rgba& color) {
+  return hn::Or(
+      hn::Or(to_unorm8(color.rgb.x), hn::ShiftLeft<8>(to_unorm8(color.rgb.y))),
+      hn::Or(hn::ShiftLeft<16>(to_unorm8(color.rgb.z)), hn::ShiftLeft<24>(to_unorm8(color.alpha))));
 }
 
 void store_colors(const float* colors, PixelMask mask, std::uint8_t* stored) noexcept {
   const DF32 d;
   const DU32 whole_d;
   auto* const to = reinterpret_cast<std::uint32_t*>(stored);
-  const auto channel = [&](std::size_t c, std::size_t i) HWY_ATTR {
-    const VF32 value = hn::LoadU(d, colors + c * kPixels + i);
-    // NaN is not greater than 0.
-    const VF32 positive = hn::IfThenElseZero(hn::Gt(value, hn::Zero(d)), value);
-    const VF32 scaled = hn::Mul(hn::Min(positive, set(1.0f)), set(255.0f));
-    return hn::BitCast(whole_d, hn::NearestInt(scaled));
-  };
+  const auto channel = [&](std::size_t c, std::size_t i)
+                           HWY_ATTR { return hn::LoadU(d, colors + c * kPixels + i); };
   const VectorRange range = vectors_of(d, mask);
   for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
-    const auto here = lanes_of(whole_d, mask, i);
-    const auto rgba =
-        hn::Or(hn::Or(channel(0, i), hn::ShiftLeft<8>(channel(1, i))),
-               hn::Or(hn::ShiftLeft<16>(channel(2, i)), hn::ShiftLeft<24>(channel(3, i))));
-    hn::BlendedStore(rgba, here, whole_d, to + i);
+    const Rgba color{{channel(0, i), channel(1, i), channel(2, i)}, channel(3, i)};
+    hn::BlendedStore(to_rgba8(color), lanes_of(whole_d, mask, i), whole_d, to + i);
   }
+}
+
+/// Pixels of a tile's blocks, side by side whatever rows and blocks they come from, so that a small
+/// triangle fills few vectors.
+struct PackedPixels {
+  static constexpr std::size_t kMost = 2 * kPixels;
+
+  std::size_t count = 0;
+  /// 64 times the block's number, plus the pixel's in it. Room for the rest of a last vector.
+  alignas(64) std::uint32_t place[kMost + kPixels];
+
+  HWY_INLINE void add(std::size_t b, PixelMask mask) {
+    for (; mask; mask &= mask - 1)
+      place[count++] =
+          static_cast<std::uint32_t>(b * kPixels + static_cast<std::size_t>(__builtin_ctzll(mask)));
+  }
+};
+
+/// Whether to pack them: what it costs to take pixels from their places and back there is less than
+/// what rows that are mostly empty cost.
+HWY_INLINE bool worth_packing(PixelMask mask) {
+  constexpr int kPixelsOfRow = 6;
+  PixelMask rows = mask | mask >> 4;
+  rows |= rows >> 2;
+  rows = (rows | rows >> 1) & 0x0101010101010101u;
+  return __builtin_popcountll(mask) <= kPixelsOfRow * __builtin_popcountll(rows);
+}
+
+/// Shades and stores the pixels and forgets them.
+HWY_INLINE void flush(const TileShading& s, PackedPixels& pixels, std::uint32_t* stored) {
+  const hn::CappedTag<double, kWidth> d;
+  const hn::Rebind<std::int32_t, decltype(d)> place_d;
+  const DF32 single_d;
+  const std::size_t count = pixels.count, lanes = hn::Lanes(single_d);
+  if (count == 0) return;
+  // Pixels of a last vector that are not there do as the first one does.
+  for (std::size_t i = count; i % lanes != 0; ++i) pixels.place[i] = pixels.place[0];
+  alignas(64) float planes[3][PackedPixels::kMost + kPixels];
+  const TileWeights& w = s.weights;
+  const auto low = hn::Set(place_d, 7), high = hn::Set(place_d, 56);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto place = hn::LoadU(place_d, reinterpret_cast<const std::int32_t*>(pixels.place) + i);
+    const auto x =
+        hn::PromoteTo(d, hn::Or(hn::And(hn::ShiftRight<3>(place), high), hn::And(place, low)));
+    const auto y = hn::PromoteTo(
+        d, hn::Or(hn::And(hn::ShiftRight<6>(place), high), hn::And(hn::ShiftRight<3>(place), low)));
+    const auto scaled_edge = [&](std::size_t k) HWY_ATTR {
+      const auto first = hn::Add(hn::Set(d, w.edge[k]), hn::Mul(y, hn::Set(d, w.step_y[k])));
+      const auto edge = hn::Add(first, hn::Mul(x, hn::Set(d, w.step_x[k])));
+      return hn::Mul(edge, hn::Set(d, w.scale[k]));
+    };
+    store_weights(w, scaled_edge(0), scaled_edge(1), scaled_edge(2), i, planes);
+  }
+  alignas(64) std::uint32_t colors[kPixels];
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const Rgba color =
+        colors_of(s, hn::Load(single_d, planes[0] + i), hn::Load(single_d, planes[1] + i),
+                  hn::Load(single_d, planes[2] + i));
+    hn::Store(to_rgba8(color), DU32(), colors);
+    for (std::size_t k = 0; k < lanes && i + k < count; ++k)
+      stored[pixels.place[i + k]] = colors[k];
+  }
+  pixels.count = 0;
 }
 
 void shade_and_store(const TileShading& shading, BlockMask blocks, const PixelMask* masks,
                      std::uint8_t* stored) noexcept {
   alignas(64) float colors[4 * kPixels];
+  auto* const packed_to = reinterpret_cast<std::uint32_t*>(stored);
+  PackedPixels packed;
   for (BlockMask rest = blocks; rest; rest &= rest - 1) {
     const auto b = static_cast<std::size_t>(__builtin_ctzll(rest));
+    if (worth_packing(masks[b])) {
+      if (packed.count > PackedPixels::kMost - kPixels) flush(shading, packed, packed_to);
+      packed.add(b, masks[b]);
+      continue;
+    }
     shade_block(shading, b, masks[b], colors);
     store_colors(colors, masks[b], stored + b * kPixels * 4);
   }
+  flush(shading, packed, packed_to);
 }
 
 }  // namespace HWY_NAMESPACE
