@@ -298,8 +298,11 @@ void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& sourc
   blocks = marked(face, blocks, tested);
   if (!blocks) return;
 
+  // What the front end found out about its pixels holds where none of them lies in another tile.
+  const bool has_pixels = triangle.pixels && box.x1 - box.x0 == triangle.x1 - triangle.x0 &&
+                          box.y1 - box.y0 == triangle.y1 - triangle.y0;
   TileEdges edges;
-  const Cover cover = cross_tile(triangle, x0_, y0_, edges);
+  const Cover cover = has_pixels ? Cover::in_32_bits : cross_tile(triangle, x0_, y0_, edges);
   if (cover == Cover::none) return;
   edges.first_row = box.y0;
   edges.end_row = box.y1;
@@ -315,7 +318,7 @@ void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& sourc
     blocks = marked(face, blocks, tested);
     if (!blocks) return;
   }
-  BlockMask filled = edges.count == 0 ? kAllBlocks : 0;
+  BlockMask filled = edges.count == 0 && !has_pixels ? kAllBlocks : 0;
   if (!few && edges.count > 0 && cover == Cover::in_32_bits)
     blocks &= kernels_.cover_blocks(edges, filled);
   if (compares && is_open() && blocks) {
@@ -333,8 +336,16 @@ void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& sourc
   if (needs_plane && !has_plane) set_plane(triangle, tested);
 
   std::array<PixelMask, kBlocksPerTile> covered;
-  tested.blocks = cover_blocks(triangle, cover == Cover::in_32_bits ? &edges : nullptr, blocks,
-                               filled, covered.data());
+  if (has_pixels) {
+    for_each_block(triangle.pixels, box.x0, box.y0, [&](std::size_t b, PixelMask pixels) {
+      covered[b] = pixels;
+      tested.blocks |= BlockMask{1} << b;
+    });
+    tested.blocks &= blocks;
+  } else {
+    tested.blocks = cover_blocks(triangle, cover == Cover::in_32_bits ? &edges : nullptr, blocks,
+                                 filled, covered.data());
+  }
   if (!tested.blocks) return;
   if (face.counts) {
     kernels_.count_blocks(face.tests.depth_func, face.count_on_pass, face.delta, tested,

@@ -43,6 +43,7 @@ void set_up(const DrawSetup& setup, const TriangleBatch& batch, std::size_t t,
   out.swapped = (batch.clockwise >> t & 1) != 0;
   out.front_facing = out.swapped == (state.front_face == FrontFace::cw);
   out.small = (batch.small >> t & 1) != 0;
+  out.pixels = static_cast<TinyPixels>(batch.pixels[t]);
   out.x0 = static_cast<std::int16_t>(batch.x0[t]);
   out.y0 = static_cast<std::int16_t>(batch.y0[t]);
   out.x1 = static_cast<std::int16_t>(batch.x1[t]);

@@ -66,6 +66,8 @@ struct SetupTriangle {
   /// Its place among the pieces; kWhole if it is the mesh's triangle.
   std::uint32_t piece = kWhole;
   std::int16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  /// Those it covers, if its box is tiny and they are known; otherwise 0.
+  TinyPixels pixels = 0;
   bool front_facing = true;
   /// Its vertices lie within kSmallPixels of each other in x and y.
   bool small = false;

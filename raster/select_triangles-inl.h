@@ -9,6 +9,8 @@
 #define GNOMON_RASTER_SELECT_TRIANGLES_INL_H
 #endif
 
+#include <limits>
+
 #include <hwy/highway.h>
 
 #include "raster/kernels.h"
@@ -141,17 +143,18 @@ HWY_INLINE TriangleMask find_planes(const TriangleSelector& s, const CornerLanes
          pixels_of(depth_d, hn::And(shallow(hn::Sub(z1, z0)), shallow(hn::Sub(z2, z0))), i);
 }
 
-/// The lanes whose triangle, of this sign, covers the centre of one of the 2x2 pixels from (x0, y0)
-/// on; of those pixels the ones below (x1, y1) count.
-HWY_INLINE hn::Mask<DI32> holds_a_center(const CornerLanes& c, VI32 sign, VI32 x0, VI32 y0, VI32 x1,
-                                         VI32 y1) {
+/// TinyPixels of triangles of this sign, the pixels from (x0, y0) on and below (x1, y1).
+HWY_INLINE VI32 covered_pixels(const CornerLanes& c, VI32 sign, VI32 x0, VI32 y0, VI32 x1,
+                               VI32 y1) {
+  static_assert(kTinyBox == 4);
   const DI32 d;
   const VI32 zero = hn::Zero(d), one = hn::Set(d, 1);
   const auto clockwise = hn::Lt(sign, zero);
   const VI32 center_x = hn::Add(hn::ShiftLeft<8>(x0), hn::Set(d, 128));
   const VI32 center_y = hn::Add(hn::ShiftLeft<8>(y0), hn::Set(d, 128));
-  // Edge values less their bias at the four centres, or-ed: the sign bit tells who is outside.
-  VI32 first = zero, right = zero, above = zero, diagonal = zero;
+  // Edge values less their bias at a row's first centre, and their steps a pixel. Or-ed with each
+  // other their sign bit tells who is outside.
+  VI32 value[3], step_x[3], step_y[3];
   for (int k = 0; k < 3; ++k) {
     const VI32 from_x = c.x[k], from_y = c.y[k];
     const VI32 to_x = c.x[(k + 1) % 3], to_y = c.y[(k + 1) % 3];
@@ -159,19 +162,35 @@ HWY_INLINE hn::Mask<DI32> holds_a_center(const CornerLanes& c, VI32 sign, VI32 x
     a = hn::IfThenElse(clockwise, hn::Neg(a), a);
     b = hn::IfThenElse(clockwise, hn::Neg(b), b);
     const auto unbiased = hn::Or(hn::Gt(a, zero), hn::And(hn::Eq(a, zero), hn::Gt(b, zero)));
-    const VI32 value = hn::Sub(
+    value[k] = hn::Sub(
         hn::Add(hn::Mul(a, hn::Sub(center_x, from_x)), hn::Mul(b, hn::Sub(center_y, from_y))),
         hn::IfThenZeroElse(unbiased, one));
-    const VI32 step_x = hn::ShiftLeft<8>(a), step_y = hn::ShiftLeft<8>(b);
-    first = hn::Or(first, value);
-    right = hn::Or(right, hn::Add(value, step_x));
-    above = hn::Or(above, hn::Add(value, step_y));
-    diagonal = hn::Or(diagonal, hn::Add(value, hn::Add(step_x, step_y)));
+    step_x[k] = hn::ShiftLeft<8>(a);
+    step_y[k] = hn::ShiftLeft<8>(b);
   }
-  const auto wide = hn::Gt(x1, hn::Add(x0, one)), tall = hn::Gt(y1, hn::Add(y0, one));
-  const auto in = [&](VI32 values) HWY_ATTR { return hn::Not(hn::Lt(values, zero)); };
-  return hn::Or(hn::Or(in(first), hn::And(wide, in(right))),
-                hn::And(tall, hn::Or(in(above), hn::And(wide, in(diagonal)))));
+  // Negative from the box's end on.
+  const VI32 last_x = hn::Sub(hn::Sub(x1, x0), one), last_y = hn::Sub(hn::Sub(y1, y0), one);
+  const VI32 right[kTinyBox] = {last_x, hn::Sub(last_x, one), hn::Sub(last_x, hn::Set(d, 2)),
+                                hn::Sub(last_x, hn::Set(d, 3))};
+  VI32 left_rows = last_y, outside = zero;
+  // From the last bit to the first would need the steps backwards; so a pixel's bit comes in at
+  // the top and goes down.
+  for (int y = 0; y < kTinyBox; ++y) {
+    VI32 e0 = value[0], e1 = value[1], e2 = value[2];
+    for (int x = 0; x < kTinyBox; ++x) {
+      const VI32 any = hn::Or(hn::Or(hn::Or(e0, e1), hn::Or(e2, right[x])), left_rows);
+      outside = hn::Or(hn::BitCast(d, hn::ShiftRight<1>(hn::BitCast(DU32(), outside))),
+                       hn::And(any, hn::Set(d, std::numeric_limits<std::int32_t>::min())));
+      if (x + 1 == kTinyBox) break;
+      e0 = hn::Add(e0, step_x[0]);
+      e1 = hn::Add(e1, step_x[1]);
+      e2 = hn::Add(e2, step_x[2]);
+    }
+    left_rows = hn::Sub(left_rows, one);
+    for (int k = 0; k < 3; ++k) value[k] = hn::Add(value[k], step_y[k]);
+  }
+  const auto pixels = hn::Not(hn::BitCast(DU32(), outside));
+  return hn::BitCast(d, hn::ShiftRight<16>(pixels));
 }
 
 /// Looks at the triangles of a vector of lanes, the first of which is number i of the batch.
@@ -212,8 +231,12 @@ HWY_INLINE void select_lanes(const TriangleSelector& s, const std::uint32_t* ind
       hn::And(hn::Lt(hn::Sub(x_max, x_min), extent), hn::Lt(hn::Sub(y_max, y_min), extent));
   const auto tiny = hn::And(hn::And(kept, small), hn::And(hn::Lt(hn::Sub(x1, x0), tiny_box),
                                                           hn::Lt(hn::Sub(y1, y0), tiny_box)));
-  if (!hn::AllFalse(d, tiny))
-    kept = hn::AndNot(hn::AndNot(holds_a_center(c, sign, x0, y0, x1, y1), tiny), kept);
+  VI32 pixels = zero;
+  if (!hn::AllFalse(d, tiny)) {
+    pixels = hn::IfThenElseZero(tiny, covered_pixels(c, sign, x0, y0, x1, y1));
+    kept = hn::AndNot(hn::And(tiny, hn::Eq(pixels, zero)), kept);
+  }
+  hn::StoreU(pixels, d, out.pixels + i);
   out.kept |= pixels_of(d, kept, i);
   out.clockwise |= pixels_of(d, hn::And(kept, clockwise), i);
   out.small |= pixels_of(d, hn::And(kept, small), i);

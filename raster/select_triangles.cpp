@@ -14,19 +14,20 @@ int first_pixel(std::int32_t fx) { return (fx + 127) >> 8; }
 /// One past the last pixel whose centre is at or before it.
 int end_pixel(std::int32_t fx) { return ((fx - 128) >> 8) + 1; }
 
-/// The triangle, of this winding, covers the centre of a pixel of the box.
-bool holds_a_center(const std::array<SnappedVertex, 3>& corners, bool clockwise,
-                    const PixelBox& box) {
+/// The pixels of a tiny box whose centres the triangle, of this winding, covers.
+TinyPixels covered_pixels(const std::array<SnappedVertex, 3>& corners, bool clockwise,
+                          const PixelBox& box) {
   SetupTriangle triangle;
   triangle.vertices = {corners[0], corners[clockwise ? 2 : 1], corners[clockwise ? 1 : 2]};
   triangle.x0 = static_cast<std::int16_t>(box.x0);
   triangle.y0 = static_cast<std::int16_t>(box.y0);
   triangle.x1 = static_cast<std::int16_t>(box.x1);
   triangle.y1 = static_cast<std::int16_t>(box.y1);
+  unsigned pixels = 0;
   for (int y = box.y0; y < box.y1; ++y)
     for (int x = box.x0; x < box.x1; ++x)
-      if (triangle.covers(x, y)) return true;
-  return false;
+      if (triangle.covers(x, y)) pixels |= 1u << (kTinyBox * (y - box.y0) + (x - box.x0));
+  return static_cast<TinyPixels>(pixels);
 }
 
 }  // namespace
@@ -56,11 +57,13 @@ void select_triangles(const TriangleSelector& selector, const std::uint32_t* ind
     if (box.empty()) continue;
     const bool small = x_max - x_min < kSmallExtent && y_max - y_min < kSmallExtent;
     const bool tiny = small && box.x1 - box.x0 <= kTinyBox && box.y1 - box.y0 <= kTinyBox;
-    if (tiny && !holds_a_center(corners, clockwise, box)) continue;
+    const TinyPixels pixels = tiny ? covered_pixels(corners, clockwise, box) : TinyPixels{0};
+    if (tiny && !pixels) continue;
     out.kept |= bit;
     if (clockwise) out.clockwise |= bit;
     if (small) out.small |= bit;
     out.area[t] = static_cast<double>(area);
+    out.pixels[t] = pixels;
     out.x0[t] = box.x0;
     out.y0[t] = box.y0;
     out.x1[t] = box.x1;

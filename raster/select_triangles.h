@@ -1,6 +1,6 @@
 // Which of a mesh's triangles reach the tiles: those that face the right way and whose box, inside
-// the draw's, has a pixel; where it has at most 2x2, one whose centre is covered. And the depth
-// planes of those that are small and not steep.
+// the draw's, has a pixel; where it has at most 4x4, one whose centre is covered. And the pixels of
+// those, and the depth planes of those that are small and not steep.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,9 @@ using TriangleMask = std::uint64_t;
 /// The vertices of a small triangle lie within so many pixels, or 1/256 pixels.
 inline constexpr int kSmallPixels = 31, kSmallExtent = kSmallPixels * 256;
 /// A small triangle is looked at pixel by pixel where its box has at most so many a side.
-inline constexpr int kTinyBox = 2;
+inline constexpr int kTinyBox = 4;
+/// Pixels of a tiny triangle, bit 4 y + x from the first pixel of its box on.
+using TinyPixels = std::uint16_t;
 
 /// What all triangles of a draw share.
 struct TriangleSelector {
@@ -42,6 +44,8 @@ struct TriangleBatch {
   /// Of those kept: twice the signed area, and the pixels of the box.
   double area[kTriangleBatch];
   std::int32_t x0[kTriangleBatch], y0[kTriangleBatch], x1[kTriangleBatch], y1[kTriangleBatch];
+  /// Of those kept: TinyPixels, which are some; 0 if it is not tiny.
+  std::int32_t pixels[kTriangleBatch];
   /// Of those with a plane (raster/depth_plane.h): the slopes, and the base at the tile of pixel
   /// (x0, y0).
   std::int64_t step_x[kTriangleBatch], step_y[kTriangleBatch], base[kTriangleBatch];

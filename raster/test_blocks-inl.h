@@ -158,6 +158,27 @@ HWY_INLINE void write_depths(const TileDepth& plane, std::size_t b, PixelMask pi
     hn::BlendedStore(depths.next(i), lanes_of(d, pixels, i), d, stored + i);
 }
 
+/// The same; of the candidates, those that stand in the relation (or the others, if `opposite`),
+/// and their depths are written.
+template <Relation kRelation>
+HWY_INLINE PixelMask replace_related_depths(bool opposite, const TileDepth& plane, std::size_t b,
+                                            PixelMask candidates, std::uint32_t* depth) {
+  const DI32 d;
+  auto* const stored = reinterpret_cast<std::int32_t*>(depth);
+  const VectorRange range = vectors_of(d, candidates);
+  Depths depths(plane, b, range.first / kWidth);
+  PixelMask passed = 0;
+  for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
+    const VI32 fresh = depths.next(i);
+    auto pass = related<kRelation>(fresh, hn::LoadU(d, stored + i));
+    if (opposite) pass = hn::Not(pass);
+    pass = hn::And(pass, lanes_of(d, candidates, i));
+    hn::BlendedStore(fresh, pass, d, stored + i);
+    passed |= pixels_of(d, pass, i);
+  }
+  return passed;
+}
+
 /// Of the pixels `candidates`, which are some, those that pass.
 HWY_INLINE PixelMask compare_depths(CompareFunc func, const TileDepth& plane, std::size_t b,
                                     const std::uint32_t* depth, PixelMask candidates) {
@@ -179,6 +200,26 @@ HWY_INLINE PixelMask compare_depths(CompareFunc func, const TileDepth& plane, st
   return candidates & (c.opposite ? ~mask : mask);
 }
 
+/// compare_depths, and the depths of those that pass are written.
+HWY_INLINE PixelMask replace_depths(CompareFunc func, const TileDepth& plane, std::size_t b,
+                                    std::uint32_t* depth, PixelMask candidates) {
+  if (func == CompareFunc::never) return 0;
+  if (func == CompareFunc::always) {
+    write_depths(plane, b, candidates, depth);
+    return candidates;
+  }
+  const Comparison c = comparison(func);
+  switch (c.relation) {
+    case Relation::less:
+      return replace_related_depths<Relation::less>(c.opposite, plane, b, candidates, depth);
+    case Relation::equal:
+      return replace_related_depths<Relation::equal>(c.opposite, plane, b, candidates, depth);
+    case Relation::greater:
+      return replace_related_depths<Relation::greater>(c.opposite, plane, b, candidates, depth);
+  }
+  return 0;
+}
+
 /// Of the pixels `candidates` of block b, which are some, those that pass the depth test; they are
 /// written if asked for.
 HWY_INLINE PixelMask test_depth(const FragmentTests& tests, const TestedBlocks& tested,
@@ -187,10 +228,10 @@ HWY_INLINE PixelMask test_depth(const FragmentTests& tests, const TestedBlocks& 
   if ((tested.depth_fails >> b & 1) != 0) return 0;
   if (passes && !tests.depth_write) return candidates;
   std::uint32_t* const depth = tested.depth + b * kPixels;
-  const PixelMask passed =
-      passes ? candidates : compare_depths(tests.depth_func, tested.plane, b, depth, candidates);
-  if (tests.depth_write && passed) write_depths(tested.plane, b, passed, depth);
-  return passed;
+  if (!tests.depth_write)
+    return compare_depths(tests.depth_func, tested.plane, b, depth, candidates);
+  return replace_depths(passes ? CompareFunc::always : tests.depth_func, tested.plane, b, depth,
+                        candidates);
 }
 
 HWY_INLINE VU8 apply(StencilOp op, VU8 value, VU8 ref) {

@@ -33,6 +33,30 @@ inline PixelMask box_mask(const PixelBox& box, int x0, int y0) {
   return mask;
 }
 
+/// Calls body(number of the block in the tile, mask) for each 8x8 block that has some of the
+/// pixels, which begin at pixel (x, y) of the tile and do not leave it.
+template <class Body>
+void for_each_block(TinyPixels pixels, int x, int y, Body body) {
+  const std::uint64_t p = pixels;
+  const PixelMask rows = (p & 0xf) | (p & 0xf0) << 4 | (p & 0xf00) << 8 | (p & 0xf000) << 12;
+  const int in_x = x % kBlockSize, in_y = y % kBlockSize;
+  const auto block = static_cast<std::size_t>(y / kBlockSize * kBlocksPerTileRow + x / kBlockSize);
+  const auto column = [&](std::size_t b, PixelMask mask) {
+    if (const PixelMask lower = mask << kBlockSize * in_y) body(b, lower);
+    if (in_y > kTinyBox)
+      if (const PixelMask upper = mask >> kBlockSize * (kBlockSize - in_y))
+        body(b + kBlocksPerTileRow, upper);
+  };
+  if (in_x <= kBlockSize - kTinyBox) {
+    column(block, rows << in_x);
+    return;
+  }
+  constexpr PixelMask kFirstColumn = 0x0101010101010101u;
+  const PixelMask at_left = kFirstColumn * ((0xffu << in_x) & 0xffu);
+  column(block, rows << in_x & at_left);
+  column(block + 1, rows >> (kBlockSize - in_x) & ~at_left);
+}
+
 /// Calls body(number of the block in the tile, mask of the box's pixels) for each 8x8 block that a
 /// box touches.
 template <class Body>

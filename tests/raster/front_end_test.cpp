@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@
 #include "raster/geometry.h"
 #include "raster/isa.h"
 #include "raster/kernels.h"
+#include "raster/tile_blocks.h"
 
 using namespace gnomon::raster;
 
@@ -194,6 +196,7 @@ TEST_P(FrontEnd, SelectsTrianglesAsPlainCode) {
           ASSERT_EQ(actual.small, expected.small) << "from triangle " << t;
           for_each_bit(expected.kept, [&](std::size_t i) {
             EXPECT_EQ(actual.area[i], expected.area[i]);
+            EXPECT_EQ(actual.pixels[i], expected.pixels[i]) << "triangle " << t + i;
             EXPECT_EQ(actual.x0[i], expected.x0[i]);
             EXPECT_EQ(actual.y0[i], expected.y0[i]);
             EXPECT_EQ(actual.x1[i], expected.x1[i]);
@@ -218,7 +221,7 @@ TEST_P(FrontEnd, SelectsTrianglesAsPlainCode) {
   EXPECT_GE(planes, GetParam() == Isa::scalar ? 0u : 2000u);
 }
 
-/// What is turned down covers nothing, and what is kept and tiny covers something.
+/// What is turned down covers nothing, and what is kept and tiny covers something: its pixels.
 TEST(SelectTriangles, TurnsDownWhatCoversNoPixel) {
   std::mt19937 random(3);
   const Soup soup = triangle_soup(5000, random);
@@ -235,20 +238,54 @@ TEST(SelectTriangles, TurnsDownWhatCoversNoPixel) {
       triangle.vertices[k] = {soup.x_fx[corner[k]], soup.y_fx[corner[k]], 0};
     if (triangle.area() < 0) std::swap(triangle.vertices[1], triangle.vertices[2]);
     triangle.x1 = triangle.y1 = 100;
-    std::size_t covered = 0;
+    std::vector<std::pair<int, int>> covered;
     if (triangle.area() != 0)
       for (int y = 0; y < 100; ++y)
-        for (int x = 0; x < 100; ++x) covered += triangle.covers(x, y) ? 1 : 0;
+        for (int x = 0; x < 100; ++x)
+          if (triangle.covers(x, y)) covered.emplace_back(x, y);
     if (!batch.kept) {
-      EXPECT_EQ(covered, 0u) << "triangle " << t;
+      EXPECT_TRUE(covered.empty()) << "triangle " << t;
       continue;
     }
-    if (!batch.small) continue;
-    if (batch.x1[0] - batch.x0[0] > kTinyBox || batch.y1[0] - batch.y0[0] > kTinyBox) continue;
-    EXPECT_GT(covered, 0u) << "triangle " << t;
+    if (!batch.small || batch.x1[0] - batch.x0[0] > kTinyBox ||
+        batch.y1[0] - batch.y0[0] > kTinyBox) {
+      EXPECT_EQ(batch.pixels[0], 0) << "triangle " << t;
+      continue;
+    }
+    std::vector<std::pair<int, int>> pixels;
+    for_each_bit(static_cast<std::uint64_t>(batch.pixels[0]), [&](std::size_t i) {
+      const int place = static_cast<int>(i);
+      pixels.emplace_back(batch.x0[0] + place % kTinyBox, batch.y0[0] + place / kTinyBox);
+    });
+    EXPECT_FALSE(pixels.empty()) << "triangle " << t;
+    EXPECT_EQ(pixels, covered) << "triangle " << t;
     ++tiny;
   }
   EXPECT_GT(tiny, 50u);
+}
+
+/// Each pixel of each place in the tile lands in the block and bit that are its own.
+TEST(TinyPixels, GoToTheBlocksThatTheyLieIn) {
+  std::mt19937 random(4);
+  for (int y = 0; y < kTileSize; ++y) {
+    for (int x = 0; x < kTileSize; ++x) {
+      auto pixels = static_cast<TinyPixels>(random());
+      std::array<PixelMask, kBlocksPerTile> expected{}, actual{};
+      for (int i = 0; i < kTinyBox * kTinyBox; ++i) {
+        const int px = x + i % kTinyBox, py = y + i / kTinyBox;
+        if (px >= kTileSize || py >= kTileSize) pixels &= static_cast<TinyPixels>(~(1u << i));
+        if ((pixels >> i & 1) == 0) continue;
+        expected[static_cast<std::size_t>(py / 8 * 8 + px / 8)] |= PixelMask{1}
+                                                                   << (py % 8 * 8 + px % 8);
+      }
+      for_each_block(pixels, x, y, [&](std::size_t b, PixelMask mask) {
+        EXPECT_EQ(actual[b], 0u) << "a block comes twice";
+        EXPECT_NE(mask, 0u);
+        actual[b] = mask;
+      });
+      EXPECT_EQ(actual, expected) << x << ", " << y;
+    }
+  }
 }
 
 }  // namespace
