@@ -279,6 +279,17 @@ bool DrawInTile::is_idle() {
 
 void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& source) noexcept {
   const FaceSetup& face = triangle.front_facing ? fragments_.front : fragments_.back;
+  // What the front end found out about its pixels holds where none of them lies in another tile.
+  if (triangle.pixels && triangle.x0 >= x0_ && triangle.y0 >= y0_ &&
+      triangle.x1 <= x0_ + kTileSize && triangle.y1 <= y0_ + kTileSize)
+    draw_tiny(face, triangle, source);
+  else
+    draw_any(face, triangle, source);
+}
+
+/// Draws a triangle of any size.
+void DrawInTile::draw_any(const FaceSetup& face, const SetupTriangle& triangle,
+                          const TriangleSource& source) {
   const PixelBox box = {std::max(triangle.x0 - x0_, 0), std::max(triangle.y0 - y0_, 0),
                         std::min(triangle.x1 - x0_, kTileSize),
                         std::min(triangle.y1 - y0_, kTileSize)};
@@ -288,21 +299,15 @@ void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& sourc
   BlockMask blocks = near.mask;
   if (face.selects) blocks &= blocks_with_stencil(face);
 
-  TestedBlocks tested{.depth_passes = face.depth_always ? kAllBlocks : 0,
-                      .depth_fails = face.depth_never ? kAllBlocks : 0,
-                      .depth = pixels_.depth(),
-                      .stencil = pixels_.stencil()};
+  TestedBlocks tested = tested_blocks(face);
   const bool compares = !face.depth_always && !face.depth_never;
   const DepthInterval bounds = compares ? vertex_depths(triangle, setup_) : DepthInterval{};
   if (compares) decide_tile(face, bounds.least, bounds.greatest, tested);
   blocks = marked(face, blocks, tested);
   if (!blocks) return;
 
-  // What the front end found out about its pixels holds where none of them lies in another tile.
-  const bool has_pixels = triangle.pixels && box.x1 - box.x0 == triangle.x1 - triangle.x0 &&
-                          box.y1 - box.y0 == triangle.y1 - triangle.y0;
   TileEdges edges;
-  const Cover cover = has_pixels ? Cover::in_32_bits : cross_tile(triangle, x0_, y0_, edges);
+  const Cover cover = cross_tile(triangle, x0_, y0_, edges);
   if (cover == Cover::none) return;
   edges.first_row = box.y0;
   edges.end_row = box.y1;
@@ -318,7 +323,7 @@ void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& sourc
     blocks = marked(face, blocks, tested);
     if (!blocks) return;
   }
-  BlockMask filled = edges.count == 0 && !has_pixels ? kAllBlocks : 0;
+  BlockMask filled = edges.count == 0 ? kAllBlocks : 0;
   if (!few && edges.count > 0 && cover == Cover::in_32_bits)
     blocks &= kernels_.cover_blocks(edges, filled);
   if (compares && is_open() && blocks) {
@@ -330,32 +335,59 @@ void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& sourc
   }
   if (face.counts && whole_) blocks = count_filled(face, blocks, filled, tested);
   if (!blocks) return;
-  const bool needs_plane =
-      face.tests.depth_test &&
-      (face.tests.depth_write || (blocks & ~(tested.depth_passes | tested.depth_fails)) != 0);
-  if (needs_plane && !has_plane) set_plane(triangle, tested);
-
   std::array<PixelMask, kBlocksPerTile> covered;
-  if (has_pixels) {
-    for_each_block(triangle.pixels, box.x0, box.y0, [&](std::size_t b, PixelMask pixels) {
-      covered[b] = pixels;
-      tested.blocks |= BlockMask{1} << b;
-    });
-    tested.blocks &= blocks;
-  } else {
-    tested.blocks = cover_blocks(triangle, cover == Cover::in_32_bits ? &edges : nullptr, blocks,
-                                 filled, covered.data());
+  tested.blocks = cover_blocks(triangle, cover == Cover::in_32_bits ? &edges : nullptr, blocks,
+                               filled, covered.data());
+  if (tested.blocks) test_pixels(face, triangle, source, has_plane, tested, covered.data());
+}
+
+/// Draws a triangle whose pixels are known and lie in the tile.
+void DrawInTile::draw_tiny(const FaceSetup& face, const SetupTriangle& triangle,
+                           const TriangleSource& source) {
+  TestedBlocks tested = tested_blocks(face);
+  const bool compares = !face.depth_always && !face.depth_never;
+  const DepthInterval bounds = compares ? vertex_depths(triangle, setup_) : DepthInterval{};
+  if (compares) decide_tile(face, bounds.least, bounds.greatest, tested);
+  const BlockMask open =
+      marked(face, face.selects ? blocks_with_stencil(face) : kAllBlocks, tested);
+  if (!open) return;
+  std::array<PixelMask, kBlocksPerTile> covered;
+  for_each_block(triangle.pixels, triangle.x0 - x0_, triangle.y0 - y0_,
+                 [&](std::size_t b, PixelMask pixels) {
+                   covered[b] = pixels;
+                   tested.blocks |= BlockMask{1} << b;
+                 });
+  tested.blocks &= open;
+  if (compares && !(tested.depth_passes | tested.depth_fails)) {
+    decide_few(bounds, face, tested.blocks, tested);
+    tested.blocks = marked(face, tested.blocks, tested);
   }
-  if (!tested.blocks) return;
+  if (tested.blocks) test_pixels(face, triangle, source, false, tested, covered.data());
+}
+
+/// What is known of the depth test before a triangle is looked at.
+TestedBlocks DrawInTile::tested_blocks(const FaceSetup& face) const {
+  return {.depth_passes = face.depth_always ? kAllBlocks : 0,
+          .depth_fails = face.depth_never ? kAllBlocks : 0,
+          .depth = pixels_.depth(),
+          .stencil = pixels_.stencil()};
+}
+
+/// Tests the covered pixels of the blocks, which are some, and marks what they mark.
+void DrawInTile::test_pixels(const FaceSetup& face, const SetupTriangle& triangle,
+                             const TriangleSource& source, bool has_plane, TestedBlocks& tested,
+                             PixelMask* covered) {
+  const bool needs_plane =
+      face.tests.depth_test && (face.tests.depth_write ||
+                                (tested.blocks & ~(tested.depth_passes | tested.depth_fails)) != 0);
+  if (needs_plane && !has_plane) set_plane(triangle, tested);
   if (face.counts) {
-    kernels_.count_blocks(face.tests.depth_func, face.count_on_pass, face.delta, tested,
-                          covered.data());
+    kernels_.count_blocks(face.tests.depth_func, face.count_on_pass, face.delta, tested, covered);
     return;
   }
-  const BlockMask passed = kernels_.test_blocks(face.tests, tested, covered.data());
-  if (face.tests.depth_test && face.tests.depth_write)
-    note_depths(tested.plane, passed, covered.data());
-  if (fragments_.color) color_blocks(triangle, source, passed, covered.data());
+  const BlockMask passed = kernels_.test_blocks(face.tests, tested, covered);
+  if (face.tests.depth_test && face.tests.depth_write) note_depths(tested.plane, passed, covered);
+  if (fragments_.color) color_blocks(triangle, source, passed, covered);
 }
 
 /// Keeps the ranges true after the pixels of the blocks got the plane's depths.

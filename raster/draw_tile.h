@@ -62,6 +62,13 @@ class DrawInTile {
   void draw(const SetupTriangle& triangle, const TriangleSource& source) noexcept;
 
  private:
+  void draw_any(const FaceSetup& face, const SetupTriangle& triangle, const TriangleSource& source);
+  void draw_tiny(const FaceSetup& face, const SetupTriangle& triangle,
+                 const TriangleSource& source);
+  TestedBlocks tested_blocks(const FaceSetup& face) const;
+  void test_pixels(const FaceSetup& face, const SetupTriangle& triangle,
+                   const TriangleSource& source, bool has_plane, TestedBlocks& tested,
+                   PixelMask* covered);
   static BlockMask marked(const FaceSetup& face, BlockMask blocks, const TestedBlocks& tested);
   void decide_tile(const FaceSetup& face, std::int32_t least, std::int32_t greatest,
                    TestedBlocks& tested) const;

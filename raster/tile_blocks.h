@@ -39,8 +39,10 @@ template <class Body>
 void for_each_block(TinyPixels pixels, int x, int y, Body body) {
   const std::uint64_t p = pixels;
   const PixelMask rows = (p & 0xf) | (p & 0xf0) << 4 | (p & 0xf00) << 8 | (p & 0xf000) << 12;
-  const int in_x = x % kBlockSize, in_y = y % kBlockSize;
-  const auto block = static_cast<std::size_t>(y / kBlockSize * kBlocksPerTileRow + x / kBlockSize);
+  // Unsigned, because the remainder of a number that may be negative takes more.
+  const unsigned ux = static_cast<unsigned>(x), uy = static_cast<unsigned>(y);
+  const int in_x = static_cast<int>(ux % kBlockSize), in_y = static_cast<int>(uy % kBlockSize);
+  const std::size_t block = uy / kBlockSize * kBlocksPerTileRow + ux / kBlockSize;
   const auto column = [&](std::size_t b, PixelMask mask) {
     if (const PixelMask lower = mask << kBlockSize * in_y) body(b, lower);
     if (in_y > kTinyBox)
