@@ -15,8 +15,9 @@ pipeline::ShadowMethod read_shadow_method(const TomlTable& t) {
   const std::string method = t.text("method").value_or("volumes");
   if (method == "volumes") return pipeline::ShadowMethod::volumes;
   if (method == "map") return pipeline::ShadowMethod::map;
+  if (method == "alias-free") return pipeline::ShadowMethod::alias_free;
   if (method == "none") return pipeline::ShadowMethod::none;
-  t.fail("method", fmt::format("'{}' is not one of volumes, map, none", method));
+  t.fail("method", fmt::format("'{}' is not one of volumes, map, alias-free, none", method));
 }
 
 pipeline::MapSettings read_map_settings(const TomlTable& t, pipeline::ShadowMethod method) {

@@ -72,9 +72,19 @@ class GeneralMethod {
 
   void add(const Light& light) {
     const Casters mapped(scene_, light, ShadowMethod::map);
+    const Casters exact(scene_, light, ShadowMethod::alias_free);
     const std::optional<LightMaps> maps = draw_maps(light, mapped);
-    // What no map can show is counted with the rest.
-    count(light, maps ? Casters(scene_, light, ShadowMethod::volumes) : Casters(scene_, light));
+    std::vector<Casters> counted{Casters(scene_, light, ShadowMethod::volumes)};
+    // What no map can show has volumes.
+    if (!maps) counted.push_back(mapped);
+    std::erase_if(counted, [](const Casters& casters) { return casters.empty(); });
+    begin(!counted.empty() ? "shadow volumes"
+          : exact.empty()  ? "no volumes"
+                           : "alias-free shadows",
+          light);
+    frame_.clear({.stencil = 0});
+    for (const Casters& casters : counted) count(light, casters);
+    if (!exact.empty()) hide(light, exact);
     if (maps && maps->six)
       add_side_by_side(light, *maps->six);
     else
@@ -108,15 +118,22 @@ class GeneralMethod {
   }
 
   void count(const Light& light, const Casters& casters) {
-    begin(casters.empty() ? "no volumes" : "shadow volumes", light);
-    frame_.clear({.stencil = 0});
-    if (casters.empty()) return;
     VolumeOptions options = volume_options_;
     options.casters = &casters;
     count_volumes(frame_, make_volumes(objects_, light, receivers_, region_, options),
                   {.appendix_letter = options_.appendix_letter,
                    .casters_drawn = !options_.all_caps,
                    .light_name = light.name});
+  }
+
+  /// After the counts: it saturates, so that no count comes back to 0.
+  void hide(const Light& light, const Casters& casters) {
+    AliasFreeMemory& memory = options_.alias_free ? *options_.alias_free : alias_free_;
+    if (!std::exchange(has_points_, true))
+      memory.finder.find(objects_, camera_, targets_.width(), targets_.height(),
+                         targets_.depth->format(), options_.threads);
+    stencil_hidden(frame_, find_hidden(objects_, casters, camera_, light, options_.threads, memory),
+                   targets_.width(), targets_.height(), "hidden from " + light.name);
   }
 
   void add_at_once(const Light& light, const Lookup& shadow_map) {
@@ -155,6 +172,8 @@ class GeneralMethod {
   const Receivers receivers_;
   raster::Frame frame_;
   std::size_t map_number_ = 0;
+  AliasFreeMemory alias_free_;
+  bool has_points_ = false;
 };
 
 }  // namespace

@@ -1,9 +1,10 @@
 // The general method (Haller 2003, section 3.1.2): an ambient pass, then for each light its shadows
-// and a pass that adds the light where there is none. Shadows are counts in the stencil buffer or a
-// shadow map, light by light and object by object (Kuehl, section 5, combined usage): each light is
-// added once, where neither hides it, so no shadow darkens twice.
+// and a pass that adds the light where there is none. Shadows are counts in the stencil buffer, a
+// shadow map or an alias-free one, light by light and object by object (Kuehl, section 5, combined
+// usage): each light is added once, where none of them hides it, so no shadow darkens twice.
 #pragma once
 
+#include "pipeline/alias_free_map.h"
 #include "pipeline/count_volumes.h"
 #include "pipeline/scene.h"
 #include "pipeline/shadow_map.h"
@@ -29,18 +30,21 @@ struct GeneralOptions {
   VolumeMemory* volumes = nullptr;
   /// Depth buffers of lights with a shadow map. Null only if no light has one.
   MapMemory* maps = nullptr;
-  /// Threads that make volumes, as in raster::ExecuteOptions.
+  /// Memory of alias-free maps kept between frames; null allocates it anew.
+  AliasFreeMemory* alias_free = nullptr;
+  /// Threads that make volumes and alias-free maps, as in raster::ExecuteOptions.
   int threads = 0;
 };
 
 /// Records the frame of a wholly virtual scene: every object, whatever its role, is drawn and
 /// shadowed. Labels: "ambient pass", "shadow volumes" and "lit pass", the latter two with ": LIGHT"
-/// when there are several lights, "shadow map: LIGHT", and "no volumes" where a light's stencil is
-/// only cleared. Where one map cannot serve a point light (plan_shadow_map) it gets six, "shadow
-/// map: LIGHT +x" and so on, unless its settings ask for one; then it gets volumes. Preconditions:
-/// all three targets; `scene` and the maps outlive the execution of the frame. After execution:
-/// colour as described, depth of the scene; the stencil is used up (a pixel that was lit is marked,
-/// so that no light adds twice where two surfaces have one depth).
+/// when there are several lights, "shadow map: LIGHT", "alias-free shadows" in the place of "shadow
+/// volumes" where there are no others, and "no volumes" where a light's stencil is only cleared.
+/// Where one map cannot serve a point light (plan_shadow_map) it gets six, "shadow map: LIGHT +x"
+/// and so on, unless its settings ask for one; then it gets volumes. Preconditions: all three
+/// targets; `scene` and the maps outlive the execution of the frame. After execution: colour as
+/// described, depth of the scene; the stencil is used up (a pixel that was lit is marked, so that
+/// no light adds twice where two surfaces have one depth).
 raster::Frame record_general(const Scene& scene, const Camera& camera,
                              const raster::Targets& targets, const GeneralOptions& options = {});
 

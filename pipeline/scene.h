@@ -28,7 +28,7 @@ struct Object {
 };
 
 /// What finds a light's shadows in the general method (pipeline/general_method.h).
-enum class ShadowMethod { volumes, map, none };
+enum class ShadowMethod { volumes, map, alias_free, none };
 
 struct Light {
   std::string name;

@@ -78,23 +78,50 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
   return glm::length(a + edge * t - p);
 }
 
-/// Does an edge of a mesh pass within one pixel, as the camera sees it? A sheet seen edge-on slips
-/// between rays, not between pixels that its snapped corners cover.
-bool mesh_edge_within_a_pixel(const Scene& scene, const Camera& camera, int x, int y) {
+/// Does an edge of the object pass within so many pixels, as the camera sees it?
+bool object_edge_within(const Object& object, const Camera& camera, int x, int y, double pixels) {
   const glm::dvec2 pixel(x + 0.5 - camera.width * 0.5, y + 0.5 - camera.height * 0.5);
-  for (const Object& object : scene.objects) {
-    const Mesh& mesh = object.model->parts[0].mesh;
-    const glm::dmat4 world(object.world_from_model);
+  const glm::dmat4 world(object.world_from_model);
+  for (const Part& part : object.model->parts) {
+    const Mesh& mesh = part.mesh;
     for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
       const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
       const glm::dvec3 a(world * glm::dvec4(mesh.positions[mesh.indices[i]]));
       const glm::dvec3 b(world * glm::dvec4(mesh.positions[mesh.indices[next]]));
       const glm::dvec3 wa = to_window(camera, a), wb = to_window(camera, b);
       if (wa.z < 0.0 || wa.z > 1.0 || wb.z < 0.0 || wb.z > 1.0) continue;
-      if (distance_to_segment(pixel, glm::dvec2(wa), glm::dvec2(wb)) <= 1.0) return true;
+      if (distance_to_segment(pixel, glm::dvec2(wa), glm::dvec2(wb)) <= pixels) return true;
     }
   }
   return false;
+}
+
+/// Does an edge of a mesh pass within one pixel, as the camera sees it? A sheet seen edge-on slips
+/// between rays, not between pixels that its snapped corners cover.
+bool mesh_edge_within_a_pixel(const Scene& scene, const Camera& camera, int x, int y) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+    return object_edge_within(object, camera, x, y, 1.0);
+  });
+}
+
+/// How far the snap to 1/256 pixel moves an edge: half of that in x and y. The pixel may show the
+/// triangle on the edge's other side, be it seen so obliquely that no ray nearby meets it.
+constexpr double kSnap = 0.70710678118654757 / 256.0;
+
+/// Does another surface lie behind the visible one by no more than a tie, for which the rays say
+/// what the stencil says? Of two surfaces that have one depth in the buffer it holds the one that
+/// was drawn first. It may be nearer to the other than the rays' origins are lifted, so the place
+/// between the two counts as well.
+bool ties_with_the_next_surface(const RayReference& rays, const Camera& camera, const RayHit& hit,
+                                const glm::vec4& light, bool counted_shadow) {
+  const glm::dvec3 along = glm::normalize(hit.point - glm::dvec3(camera.eye_world));
+  // Past the visible surface itself: float32's rounding.
+  const double step = 0x1p-21 * std::max(1.0, glm::length(hit.point));
+  const RayHit next = rays.trace({hit.point + along * step, along});
+  const double gap = step + next.distance;
+  if (!next.hit || gap > scales_at(camera, hit).tie_m) return false;
+  return rays.shadow(next, light).in_shadow == counted_shadow ||
+         rays.blocked(hit.point + along * (0.5 * gap), light) == counted_shadow;
 }
 
 /// Do the rays say what the stencil says when the visible point moves towards the viewer (never
@@ -151,10 +178,13 @@ Reason why(const Scene& scene, const RayReference& rays, const Camera& camera,
   const bool drawn = depth != raster::DepthBuffer(1, 1).max_value();
   if (edge_within_a_pixel(rays, camera, light, x, y, drawn, hit.hit, counted_shadow) ||
       (drawn && hit.hit && shows_another_surface(camera, hit, depth)) ||
-      (drawn && !hit.hit && mesh_edge_within_a_pixel(scene, camera, x, y))) {
+      (drawn && !hit.hit && mesh_edge_within_a_pixel(scene, camera, x, y)) ||
+      (drawn && hit.hit && object_edge_within(scene.objects[hit.object], camera, x, y, kSnap))) {
     return Reason::edge;
   }
-  if (hit.hit && is_depth_tie(rays, camera, hit, light, counted_shadow)) return Reason::depth_tie;
+  if (hit.hit && (is_depth_tie(rays, camera, hit, light, counted_shadow) ||
+                  ties_with_the_next_surface(rays, camera, hit, light, counted_shadow)))
+    return Reason::depth_tie;
   return Reason::none;
 }
 

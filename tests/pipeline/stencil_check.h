@@ -36,9 +36,11 @@ struct Disagreement {
   std::size_t wrong = 0;
   /// Wrong pixels with a place within one pixel where the rays say what the stencil says, or where
   /// the depth buffer holds another surface than the ray's: a silhouette or a shadow's edge passes.
+  /// Also those whose ray passes an edge of the visible object no farther than corners snap.
   std::size_t at_edge = 0;
   /// Wrong pixels whose visible point changes between light and shadow when it moves by two units
-  /// of the depth buffer (and float32's rounding of the corners).
+  /// of the depth buffer (and float32's rounding of the corners), or that have another surface so
+  /// little behind the visible one.
   std::size_t depth_tie = 0;
   std::size_t unexplained = 0;
   Disagreement& operator+=(const Disagreement& other);
