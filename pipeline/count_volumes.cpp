@@ -37,14 +37,16 @@ void count_two_sided(raster::Frame& frame, const PlacedVolume& volume,
   frame.draw(std::move(draw));
 }
 
-/// One of the appendix's two draws: the faces that add, or those that take away.
+/// One of two draws: the faces that add, or those that take away.
 void count_single_sided(raster::Frame& frame, const PlacedVolume& volume,
                         const CountOptions& options, bool add) {
   raster::Draw draw = counting_draw(volume, options);
   const bool front = (volume.method == VolumeMethod::zpass) == add;
   draw.state.cull = front ? raster::Cull::back : raster::Cull::front;
-  draw.state.stencil = raster::StencilState::both(
-      face(options, volume.method, add ? raster::StencilOp::incr : raster::StencilOp::decr));
+  using raster::StencilOp;
+  const StencilOp up = options.appendix_letter ? StencilOp::incr : StencilOp::incr_wrap;
+  const StencilOp down = options.appendix_letter ? StencilOp::decr : StencilOp::decr_wrap;
+  draw.state.stencil = raster::StencilState::both(face(options, volume.method, add ? up : down));
   draw.label += front ? ", front faces" : ", back faces";
   frame.draw(std::move(draw));
 }
@@ -54,7 +56,7 @@ void count_single_sided(raster::Frame& frame, const PlacedVolume& volume,
 void count_volumes(raster::Frame& frame, std::span<const PlacedVolume> volumes,
                    const CountOptions& options) {
   for (const PlacedVolume& volume : volumes) frame.keep(volume.volume);
-  if (!options.appendix_letter) {
+  if (!options.appendix_letter && !options.single_sided) {
     for (const PlacedVolume& volume : volumes) count_two_sided(frame, volume, options);
     return;
   }

@@ -16,8 +16,12 @@ namespace gnomon::pipeline {
 struct CountOptions {
   /// Appendix A to the letter: single-sided draws with culling and saturating INCR and DECR, all
   /// increments before all decrements. Otherwise one two-sided draw a volume with wrapping
-  /// operations.
+  /// operations, if single_sided does not say otherwise.
   bool appendix_letter = false;
+  /// OpenGL 1.x's single-sided stencil: two draws a volume with culling, all that add before all
+  /// that take away, as in the appendix, but with wrapping operations. The stencil is the two-sided
+  /// one's.
+  bool single_sided = false;
   /// Stencil bits that count.
   std::uint8_t write_mask = 0xff;
   /// All casters are in the depth buffer: front caps of z-pass volumes are left out.

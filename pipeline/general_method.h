@@ -16,6 +16,8 @@ namespace gnomon::pipeline {
 struct GeneralOptions {
   VolumeMethod method = VolumeMethod::automatic;
   Extrusion extrusion;
+  /// As VolumeOptions::geometry.
+  VolumeGeometry geometry = VolumeGeometry::silhouettes;
   /// As VolumeOptions::all_caps.
   bool all_caps = false;
   /// With at_receivers the picture is the same and the stencil may differ. Saturating counts

@@ -17,6 +17,8 @@
 
 #include <utility>
 
+#include "pipeline/swept_point.h"
+#include "raster/check.h"
 #include "raster/executor.h"
 
 namespace gnomon::pipeline {
@@ -67,8 +69,9 @@ class Maker {
     if (makes_windows(options)) in_view_.emplace(objects, *options.view);
   }
 
-  /// Fills `placed` and `volume`; leaves `placed.volume` null where there is none.
-  void make(const PlacedObject& object, VolumeMemory::Worker& worker,
+  /// Fills `placed` and `volume`; leaves `placed.volume` null where there is none. `quads` is null
+  /// for silhouettes.
+  void make(const PlacedObject& object, const DegenerateQuads* quads, VolumeMemory::Worker& worker,
             std::shared_ptr<ShadowVolume> volume, PlacedVolume& placed) const {
     const Topology& topology = *object.topology;
     const glm::mat4& world_from_model = object.object->world_from_model;
@@ -77,7 +80,9 @@ class Maker {
         choose_method(options_.method, region_, light_.position, topology, world_from_model);
     if (in_view_ && !find_window(object, placed)) return;
     Silhouette& silhouette = worker.silhouette;
-    if (options_.classical)
+    if (quads)
+      find_casting(topology, light_model, quads->both_sides, silhouette.casting);
+    else if (options_.classical)
       find_classical_silhouette(topology, light_model, silhouette);
     else
       find_silhouette(topology, light_model, silhouette);
@@ -87,8 +92,12 @@ class Maker {
     }
     const Sweep sweep = sweep_of(options_.extrusion, placed.reach);
     if (sweep.kind == Sweep::Kind::nowhere) return;
-    const Caps caps = caps_for(object, placed.method, sweep, options_);
-    extrude(object, light_model, sweep, caps, worker, *volume);
+    if (quads) {
+      sweep_quads(*quads, object, light_model, sweep, worker, *volume);
+    } else {
+      const Caps caps = caps_for(object, placed.method, sweep, options_);
+      extrude(object, light_model, sweep, caps, worker, *volume);
+    }
     if (volume->empty()) return;
     placed.volume = std::move(volume);
     placed.caster = object.object;
@@ -132,6 +141,20 @@ class Maker {
     }
   }
 
+  static void sweep_quads(const DegenerateQuads& quads, const PlacedObject& object,
+                          const glm::dvec4& light_model, const Sweep& sweep,
+                          VolumeMemory::Worker& worker, ShadowVolume& volume) {
+    const auto to = [&](const auto& far_of) {
+      displace(quads, *object.topology, worker.silhouette.casting, far_of, worker.far, volume);
+    };
+    if (sweep.kind == Sweep::Kind::infinite)
+      to(swept_to_infinity(light_model));
+    else if (sweep.kind == Sweep::Kind::amount || light_model.w == 0.0)
+      to(swept_by(light_model, sweep.amount));
+    else
+      to(swept_by_radius(light_model, object.object->world_from_model, sweep.amount));
+  }
+
   const Light& light_;
   const Receivers& receivers_;
   const std::optional<NearRegion>& region_;
@@ -160,6 +183,16 @@ std::vector<std::shared_ptr<ShadowVolume>> VolumeMemory::volumes(std::size_t cou
   return taken;
 }
 
+std::shared_ptr<const DegenerateQuads> VolumeMemory::quads(
+    const std::shared_ptr<const Topology>& topology, bool both_sides) {
+  for (const Extended& known : extended_) {
+    if (known.topology == topology && known.quads->both_sides == both_sides) return known.quads;
+  }
+  extended_.push_back({topology, std::make_shared<const DegenerateQuads>(
+                                     add_degenerate_quads(*topology, both_sides))});
+  return extended_.back().quads;
+}
+
 Receivers receivers_for(const VolumeOptions& options, const Scene& scene) {
   return needs_reach(options) ? Receivers(scene) : Receivers();
 }
@@ -180,13 +213,23 @@ std::vector<PlacedVolume> make_volumes(std::span<const PlacedObject> objects, co
   const std::span<VolumeMemory::Worker> workers =
       memory.workers((casters.size() + kChunk - 1) / kChunk);
   std::vector<PlacedVolume> placed(casters.size());
+  const bool extends = options.geometry == VolumeGeometry::degenerate_quads;
+  raster::require(!extends || !options.classical, "classical volumes have silhouettes");
+  std::vector<std::shared_ptr<const DegenerateQuads>> quads(casters.size());
+  for (std::size_t i = 0; extends && i < casters.size(); ++i) {
+    const glm::dvec4 light_model =
+        light_in_model(light.position, casters[i]->object->world_from_model);
+    quads[i] =
+        memory.quads(casters[i]->topology, casts_both_sides(*casters[i]->topology, light_model));
+  }
   const Maker maker(objects, light, receivers, region, options);
-  raster::for_each_chunk(
-      casters.size(), kChunk, options.threads, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-          maker.make(*casters[i], workers[first / kChunk], std::move(volumes[i]), placed[i]);
-        }
-      });
+  raster::for_each_chunk(casters.size(), kChunk, options.threads,
+                         [&](std::size_t first, std::size_t last) {
+                           for (std::size_t i = first; i < last; ++i) {
+                             maker.make(*casters[i], quads[i].get(), workers[first / kChunk],
+                                        std::move(volumes[i]), placed[i]);
+                           }
+                         });
   std::erase_if(placed, [](const PlacedVolume& volume) { return volume.volume == nullptr; });
   return placed;
 }

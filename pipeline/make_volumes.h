@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pipeline/casters.h"
+#include "pipeline/degenerate_quads.h"
 #include "pipeline/near_clip.h"
 #include "pipeline/placed_object.h"
 #include "pipeline/receivers.h"
@@ -51,15 +52,25 @@ class VolumeMemory {
     VolumeBuilder builder;
     Silhouette silhouette;
     CastingMesh casting;
+    /// Swept positions.
+    std::vector<glm::vec4> far;
   };
   /// One a chunk of work.
   std::span<Worker> workers(std::size_t count);
   /// So many volumes, of any content.
   std::vector<std::shared_ptr<ShadowVolume>> volumes(std::size_t count);
+  /// The extended mesh, built the first time.
+  std::shared_ptr<const DegenerateQuads> quads(const std::shared_ptr<const Topology>& topology,
+                                               bool both_sides);
 
  private:
+  struct Extended {
+    std::shared_ptr<const Topology> topology;
+    std::shared_ptr<const DegenerateQuads> quads;
+  };
   std::vector<Worker> workers_;
   std::vector<std::shared_ptr<ShadowVolume>> volumes_;
+  std::vector<Extended> extended_;
 };
 
 /// At which pixels the stencil is the plain method's after the counts (closed volumes to infinity,
@@ -70,6 +81,16 @@ enum class Counts : std::uint8_t {
   /// visible receiver are left out, others get a window, and the automatic extrusion goes to
   /// infinity: within a window, sides are cheaper than the back cap that a finite volume needs.
   at_receivers
+};
+
+/// How volumes get their triangles.
+enum class VolumeGeometry : std::uint8_t {
+  /// Outline and caps are found anew for each light (pipeline/silhouette.h).
+  silhouettes,
+  /// Vertices of a constant mesh are moved (pipeline/degenerate_quads.h). The counts of volumes to
+  /// infinity are those of silhouettes; there is always a cap at both ends. Finite ones of a closed
+  /// mesh end where its sides that are turned from the light go, so farther away.
+  degenerate_quads
 };
 
 struct VolumeOptions {
@@ -83,6 +104,8 @@ struct VolumeOptions {
   bool classical = false;
   /// Which objects cast; null: all that Object::casts says.
   const Casters* casters = nullptr;
+  /// Of volumes that are not classical.
+  VolumeGeometry geometry = VolumeGeometry::silhouettes;
   /// Casters of this role are counted also where they are not in the depth buffer, so their volumes
   /// keep the front cap. All others must be in it, drawn with surface_state and their PlacedObject.
   std::optional<Role> counted_before_drawn = {};

@@ -1,17 +1,16 @@
 #include "pipeline/shadow_volume.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "pipeline/swept_point.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
 
 raster::MeshView ShadowVolume::view_without_front_cap() const {
+  if (shared_indices) return view();
   const std::span<const glm::vec4> all(positions);
   const bool sides_only = indices.size() == front_cap_indices + side_indices;
   return {sides_only ? all.first(side_positions) : all,
@@ -66,6 +65,7 @@ class VolumeBuilder::Assembler {
       sides += (one_far_point_ ? 3 : 6) * static_cast<std::size_t>(edge.multiplicity);
     }
     const std::size_t front = caps_.front ? cap : 0;
+    volume_.shared_indices = nullptr;
     volume_.front_cap_indices = front;
     volume_.side_indices = sides;
     volume_.indices.resize(front + sides + (has_back_cap() ? cap : 0));
@@ -160,44 +160,28 @@ void VolumeBuilder::assemble(const Topology& topology, const Silhouette& silhoue
 void VolumeBuilder::extrude_to_infinity(const Topology& topology, const Silhouette& silhouette,
                                         const glm::dvec4& light_model, Caps caps,
                                         ShadowVolume& volume) {
-  const glm::dvec3 light(light_model);
-  const bool directional = light_model.w == 0.0;
-  const auto far_of = [&](const glm::dvec3& v) {
-    return glm::vec4(glm::dvec4(directional ? -light : v - light, 0.0));
-  };
-  assemble(topology, silhouette, directional, caps, far_of, volume);
+  assemble(topology, silhouette, light_model.w == 0.0, caps, swept_to_infinity(light_model),
+           volume);
 }
 
 void VolumeBuilder::extrude_by(const Topology& topology, const Silhouette& silhouette,
                                const glm::dvec4& light_model, double amount, Caps caps,
                                ShadowVolume& volume) {
-  raster::require(std::isfinite(amount) && amount >= 0.0, "a sweep is finite and not negative");
-  const glm::dvec3 light(light_model);
-  const bool directional = light_model.w == 0.0;
-  const auto far_of = [&](const glm::dvec3& v) {
-    return glm::vec4(
-        glm::dvec4(directional ? v - light * amount : light + (v - light) * amount, 1.0));
-  };
-  assemble(topology, silhouette, false, caps, far_of, volume);
+  assemble(topology, silhouette, false, caps, swept_by(light_model, amount), volume);
 }
 
 void VolumeBuilder::extrude_by_radius(const Topology& topology, const Silhouette& silhouette,
                                       const glm::dvec4& light_model,
                                       const glm::mat4& world_from_model, double radius_m, Caps caps,
                                       ShadowVolume& volume) {
-  raster::require(std::isfinite(radius_m) && radius_m > 0.0, "a radius is positive and finite");
+  raster::require(radius_m > 0.0, "a radius is positive and finite");
   // A direction's unit is a metre already (light_in_model).
   if (light_model.w == 0.0) {
     extrude_by(topology, silhouette, light_model, radius_m, caps, volume);
     return;
   }
-  const glm::dvec3 light(light_model);
-  const glm::dmat3 world(glm::dmat4{world_from_model});
-  const auto far_of = [&](const glm::dvec3& v) {
-    const double ray_m = glm::length(world * (v - light));
-    return glm::vec4(glm::dvec4(v + (v - light) * (radius_m / ray_m), 1.0));
-  };
-  assemble(topology, silhouette, false, caps, far_of, volume);
+  assemble(topology, silhouette, false, caps,
+           swept_by_radius(light_model, world_from_model, radius_m), volume);
 }
 
 ShadowVolume extrude_to_infinity(const Topology& topology, const Silhouette& silhouette,

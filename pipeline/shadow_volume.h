@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -32,15 +33,18 @@ struct ShadowVolume {
   /// First those of the sides.
   std::vector<glm::vec4> positions;
   std::vector<std::uint32_t> indices;
+  /// In the place of `indices`, of a volume that shares them with others, whose caps and sides are
+  /// not apart (pipeline/degenerate_quads.h).
+  std::shared_ptr<const std::vector<std::uint32_t>> shared_indices = nullptr;
   /// Indices (three a triangle) of the front cap and of the sides; the rest is the back cap.
   std::size_t front_cap_indices = 0, side_indices = 0;
   /// Positions that the sides use.
   std::size_t side_positions = 0;
 
-  raster::MeshView view() const { return {positions, indices}; }
-  /// The sides and the back cap, if there is one.
+  raster::MeshView view() const { return {positions, shared_indices ? *shared_indices : indices}; }
+  /// The sides and the back cap, if there is one; of a volume that shares indices, all.
   raster::MeshView view_without_front_cap() const;
-  bool empty() const { return indices.empty(); }
+  bool empty() const { return view().indices.empty(); }
 };
 
 /// Builds volumes one after the other in memory that it keeps. Not for use by several threads at

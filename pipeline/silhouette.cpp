@@ -104,14 +104,21 @@ glm::dvec4 light_in_model(const glm::vec4& light_world, const glm::mat4& world_f
   return result;
 }
 
+bool casts_both_sides(const Topology& topology, const glm::dvec4& light_model) {
+  const glm::dvec3 light(light_model);
+  return !topology.closed() ||
+         (light_model.w != 0.0 && in_bounds(topology, light) && encloses(topology, light));
+}
+
+void find_casting(const Topology& topology, const glm::dvec4& light_model, bool both_sides,
+                  std::vector<std::int8_t>& casting) {
+  casting.resize(topology.triangle_count());
+  mark_casting(topology.planes, light_model, both_sides ? -1 : 0, casting);
+}
+
 void find_silhouette(const Topology& topology, const glm::dvec4& light_model,
                      Silhouette& silhouette) {
-  const glm::dvec3 light(light_model);
-  const bool both_sides =
-      !topology.closed() ||
-      (light_model.w != 0.0 && in_bounds(topology, light) && encloses(topology, light));
-  silhouette.casting.resize(topology.triangle_count());
-  mark_casting(topology.planes, light_model, both_sides ? -1 : 0, silhouette.casting);
+  find_casting(topology, light_model, casts_both_sides(topology, light_model), silhouette.casting);
   silhouette.edges.clear();
   std::uint32_t next = 0;
   for (const std::uint32_t unpaired : topology.unpaired_edges) {
@@ -124,8 +131,7 @@ void find_silhouette(const Topology& topology, const glm::dvec4& light_model,
 
 void find_classical_silhouette(const Topology& topology, const glm::dvec4& light_model,
                                Silhouette& silhouette) {
-  silhouette.casting.resize(topology.triangle_count());
-  mark_casting(topology.planes, light_model, 0, silhouette.casting);
+  find_casting(topology, light_model, false, silhouette.casting);
   silhouette.edges.clear();
   for (const Edge& edge : topology.edges) {
     const std::span<const EdgeUse> uses = topology.uses_of(edge);

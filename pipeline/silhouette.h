@@ -34,6 +34,14 @@ struct Silhouette {
 /// Precondition: world_from_model is affine and invertible, the light is finite and no null vector.
 glm::dvec4 light_in_model(const glm::vec4& light_world, const glm::mat4& world_from_model);
 
+/// Do triangles that turn their back to the light cast too? Those of a mesh that is not closed, or
+/// holds the light.
+bool casts_both_sides(const Topology& topology, const glm::dvec4& light_model);
+
+/// Silhouette::casting alone. `both_sides`: see above.
+void find_casting(const Topology& topology, const glm::dvec4& light_model, bool both_sides,
+                  std::vector<std::int8_t>& casting);
+
 /// The casting triangles and their boundary. One decision a triangle, from the sign of a double
 /// determinant; a triangle edge-on to the light does not cast.
 /// A closed mesh casts with the triangles that face the light. An open one casts with all: its

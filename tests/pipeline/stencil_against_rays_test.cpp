@@ -289,8 +289,10 @@ TEST(StencilCounts, OfZPassAndZFailAreTheSameWhereTheCameraIsOutside) {
     const VolumeOptions fail{VolumeMethod::zfail, extrusion_of(i)};
     const test::Counted a = test::count_scene(scene, camera, pass);
     const test::Counted b = test::count_scene(scene, camera, fail);
-    const test::Counted letter_a = test::count_scene(scene, camera, pass, true);
-    const test::Counted letter_b = test::count_scene(scene, camera, fail, true);
+    const test::Counted letter_a =
+        test::count_scene(scene, camera, pass, {.appendix_letter = true});
+    const test::Counted letter_b =
+        test::count_scene(scene, camera, fail, {.appendix_letter = true});
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         // Behind an infinite volume the background is in shadow for z-fail only.

@@ -149,7 +149,7 @@ Disagreement& Disagreement::operator+=(const Disagreement& other) {
 }
 
 Counted count_scene(const Scene& scene, const Camera& camera, const VolumeOptions& options,
-                    bool appendix_letter) {
+                    const CountOptions& count_options) {
   Counted counted{raster::DepthBuffer(camera.width, camera.height),
                   raster::StencilBuffer(camera.width, camera.height)};
   TopologyCache topologies;
@@ -167,7 +167,7 @@ Counted count_scene(const Scene& scene, const Camera& camera, const VolumeOption
   state.depth = raster::DepthState{};
   for (const PlacedObject& object : objects) draw_depth(frame, object, state);
   frame.begin_pass("volumes", targets);
-  count_volumes(frame, volumes, {.appendix_letter = appendix_letter});
+  count_volumes(frame, volumes, count_options);
   raster::execute(frame);
   return counted;
 }

@@ -20,7 +20,8 @@ struct Counted {
   std::size_t zpass = 0, zfail = 0;
 };
 Counted count_scene(const pipeline::Scene& scene, const pipeline::Camera& camera,
-                    const pipeline::VolumeOptions& options, bool appendix_letter = false);
+                    const pipeline::VolumeOptions& options,
+                    const pipeline::CountOptions& count_options = {});
 
 enum class Reason { edge, depth_tie, none };
 

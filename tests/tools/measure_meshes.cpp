@@ -5,8 +5,13 @@
 // A mesh is scaled to a bounding box of diagonal 1 m and set above a plate, three times, turned
 // differently; the light is above, a point or a direction. Each picture is counted with robust
 // volumes (z-fail, and the automatic choice) and with classical ones (z-fail), and every pixel is
-// compared with Embree's answer. A wrong pixel is explained where a silhouette or a shadow's edge
-// passes within a pixel, or where two units of depth decide (tests/pipeline/stencil_check.h).
+// compared with Embree's answer. Volumes of degenerate quads are compared with those of
+// silhouettes: the stencil's bytes after z-pass and z-fail, drawn two-sided and in two
+// single-sided passes, to infinity; and the milliseconds of making (least of five, after a first
+// one, on one thread) and of executing depth, volumes and counts (z-fail, the same). A wrong pixel
+// is explained where a silhouette or a shadow's edge passes within a pixel, or where two units of
+// depth decide (tests/pipeline/stencil_check.h).
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -19,6 +24,7 @@
 #include <glm/geometric.hpp>
 
 #include "ar/model_file.h"
+#include "ar/stopwatch.h"
 #include "tests/pipeline/stencil_check.h"
 #include "tests/pipeline/test_meshes.h"
 
@@ -67,9 +73,69 @@ Scene scene_of(const std::shared_ptr<const Model>& model, int picture, std::mt19
   return scene;
 }
 
+/// Milliseconds of all pictures.
+struct Times {
+  double make_ms = 0.0, execute_ms = 0.0;
+};
+
 struct Row {
   test::Disagreement robust_zfail, robust_automatic, classical;
+  std::size_t bytes = 0, different = 0;
+  Times silhouettes, quads;
 };
+
+constexpr Extrusion kInfinite{.kind = Extrusion::Kind::infinite};
+
+void compare_geometries(const Scene& scene, const Camera& camera, Row& row) {
+  for (const VolumeMethod method : {VolumeMethod::zpass, VolumeMethod::zfail}) {
+    VolumeOptions options{.method = method, .extrusion = kInfinite};
+    const auto expected = test::count_scene(scene, camera, options).stencil.to_rows();
+    options.geometry = VolumeGeometry::degenerate_quads;
+    for (const bool single_sided : {false, true}) {
+      const auto got = test::count_scene(scene, camera, options, {.single_sided = single_sided})
+                           .stencil.to_rows();
+      row.bytes += got.size();
+      for (std::size_t i = 0; i < got.size(); ++i) row.different += got[i] != expected[i];
+    }
+  }
+}
+
+void time_geometry(const Scene& scene, const Camera& camera, VolumeGeometry geometry,
+                   Times& times) {
+  constexpr int kTimes = 6;
+  TopologyCache topologies;
+  VolumeMemory memory;
+  raster::ExecuteMemory executing;
+  const std::vector<PlacedObject> objects = place_objects(scene, camera, topologies);
+  raster::DepthBuffer depth(kWidth, kHeight);
+  raster::StencilBuffer stencil(kWidth, kHeight);
+  double make_ms = 1e30, execute_ms = 1e30;
+  for (int i = 0; i < kTimes; ++i) {
+    ar::Stopwatch timer;
+    const std::vector<PlacedVolume> volumes = make_volumes(objects, scene.lights[0], {}, {},
+                                                           {.method = VolumeMethod::zfail,
+                                                            .extrusion = kInfinite,
+                                                            .geometry = geometry,
+                                                            .threads = 1,
+                                                            .memory = &memory});
+    const double made_ms = timer.lap_ms();
+    raster::Frame frame;
+    frame.begin_pass("surfaces and volumes", {.depth = &depth, .stencil = &stencil});
+    frame.clear({.depth = 1.0f, .stencil = 0});
+    raster::State state = surface_state();
+    state.depth = raster::DepthState{};
+    for (const PlacedObject& object : objects) draw_depth(frame, object, state);
+    count_volumes(frame, volumes, {});
+    timer.lap_ms();
+    raster::execute(frame, {.threads = 1, .memory = &executing});
+    const double executed_ms = timer.lap_ms();
+    if (i == 0) continue;
+    make_ms = std::min(make_ms, made_ms);
+    execute_ms = std::min(execute_ms, executed_ms);
+  }
+  times.make_ms += make_ms;
+  times.execute_ms += execute_ms;
+}
 
 Row measure(const std::shared_ptr<const Model>& model) {
   std::mt19937 random(2005);
@@ -84,13 +150,15 @@ Row measure(const std::shared_ptr<const Model>& model) {
       return test::compare_with_rays(test::count_scene(scene, camera, options), scene, rays,
                                      camera);
     };
-    const Extrusion infinite{.kind = Extrusion::Kind::infinite};
-    row.robust_zfail += compare({.method = VolumeMethod::zfail, .extrusion = infinite});
+    row.robust_zfail += compare({.method = VolumeMethod::zfail, .extrusion = kInfinite});
     row.robust_automatic += compare({});
     row.classical += compare({.method = VolumeMethod::zfail,
-                              .extrusion = infinite,
+                              .extrusion = kInfinite,
                               .all_caps = true,
                               .classical = true});
+    compare_geometries(scene, camera, row);
+    time_geometry(scene, camera, VolumeGeometry::silhouettes, row.silhouettes);
+    time_geometry(scene, camera, VolumeGeometry::degenerate_quads, row.quads);
   }
   return row;
 }
@@ -101,10 +169,18 @@ void print(const std::string& name, const Model& model, const Row& row) {
   const auto pair = [](const test::Disagreement& d) {
     return std::to_string(d.wrong) + ", " + std::to_string(d.unexplained);
   };
-  std::printf("| %s | %zu | %zu, %zu, %zu | %zu | %s | %s | %s |\n", name.c_str(),
-              topology.triangle_count(), faults.boundary_edges, faults.non_manifold_edges,
-              faults.inconsistent_edges, row.robust_zfail.tested, pair(row.robust_zfail).c_str(),
-              pair(row.robust_automatic).c_str(), pair(row.classical).c_str());
+  const auto times = [](const Times& t) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2f + %.2f", t.make_ms / kPictures,
+                  t.execute_ms / kPictures);
+    return std::string(text);
+  };
+  std::printf("| %s | %zu | %zu, %zu, %zu | %zu | %s | %s | %s | %zu of %zu | %s | %s |\n",
+              name.c_str(), topology.triangle_count(), faults.boundary_edges,
+              faults.non_manifold_edges, faults.inconsistent_edges, row.robust_zfail.tested,
+              pair(row.robust_zfail).c_str(), pair(row.robust_automatic).c_str(),
+              pair(row.classical).c_str(), row.different, row.bytes, times(row.silhouettes).c_str(),
+              times(row.quads).c_str());
   std::fflush(stdout);
 }
 
@@ -112,8 +188,9 @@ int run(int count, char** files) {
   std::puts(
       "| mesh | triangles | open, non-manifold, inconsistent edges | pixels | robust z-fail: "
       "wrong, "
-      "unexplained | robust automatic | classical z-fail |\n"
-      "| --- | --- | --- | --- | --- | --- | --- |");
+      "unexplained | robust automatic | classical z-fail | degenerate quads: stencil bytes that "
+      "differ | silhouettes, ms | degenerate quads, ms |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
   int failed = 0;
   for (int i = 0; i < count; ++i) {
     const std::filesystem::path path = files[i];
