@@ -15,8 +15,13 @@
 // the plane's at a point of that texel by at most (|dx| + |dy|) / 2 <= max(|dx|, |dy|) = m, which
 // is what polygon offset multiplies its factor with: factor 1 is enough for the nearest texel. The
 // 2x2 filter reads texels whose centres are up to one texel away in x and y: |dx| + |dy| <= 2 m,
-// factor 2. Units: one for each rounding to the buffer's format, and float32's 2^-23 of the
-// coordinates, twice transformed, times the change of depth a metre.
+// factor 2. A closed body's map holds the faces turned from the light: where it is thick, they are
+// far behind any lit face. Of a plate h thick whose normal makes the angle t with the light, the
+// averted face lies h / cos t behind the lit one, and the error over a texel w is at most w tan t:
+// with h >= w no factor is needed at all, and light leaks less than with one. A body counts as
+// thick when it is so by twice, in the mean (Topology::thickness). Units: one for each rounding to
+// the buffer's format, and float32's 2^-23 of the coordinates, twice transformed, times the change
+// of depth a metre.
 #include "pipeline/map_plan.h"
 
 #include <algorithm>
@@ -246,6 +251,8 @@ std::optional<MapPlan> MapPlanner::plan(const LightView& view,
   plan.size = settings_.size
                   ? *settings_.size
                   : size_for(view, rectangle, receivers, camera_, settings_.largest_size);
+  const glm::dvec2 extent = rectangle.extent();
+  plan.texel_m = std::max(extent.x, extent.y) / plan.size * (view.is_point() ? span.far : 1.0);
   if (!by_hand) {
     // So that a lookup at the edge finds texels on both sides.
     const glm::dvec2 margin = rectangle.extent() * (2.0 / plan.size);
@@ -262,9 +269,10 @@ std::optional<MapPlan> MapPlanner::plan(const LightView& view,
   plan.clip_from_world = view.clip_from_world(rectangle, planes.x, planes.y);
   const double one = settings_.format == raster::DepthFormat::d24 ? 0xffffff : 0xffff;
   const double rounding = 0x1p-21 * size_m * view.depth_rate(planes.x, planes.y) * one;
-  plan.offset = settings_.offset.value_or(
-      raster::PolygonOffset{settings_.filter == raster::Filter::nearest ? 1.0f : 2.0f,
-                            static_cast<float>(2.0 + rounding)});
+  const auto units = static_cast<float>(2.0 + rounding);
+  const float factor = settings_.filter == raster::Filter::nearest ? 1.0f : 2.0f;
+  plan.offset = settings_.offset.value_or(raster::PolygonOffset{factor, units});
+  plan.offset_of_thick = settings_.offset.value_or(raster::PolygonOffset{0.0f, units});
   return plan;
 }
 

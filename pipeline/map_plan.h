@@ -24,7 +24,11 @@ struct MapPlan {
   bool empty = false;
   glm::mat4 clip_from_world{1.0f};
   int size = 0;
-  raster::PolygonOffset offset;
+  /// Metres that a texel is wide at the farthest caster.
+  double texel_m = 0.0;
+  /// Of casters, and of those closed ones that are thick against a texel: of them the map holds the
+  /// faces turned from the light, and every lit face lies before them by more than a texel's error.
+  raster::PolygonOffset offset, offset_of_thick;
 };
 
 /// The casters' part of a map's depths. A power of two less than 1, so that float32 has it.

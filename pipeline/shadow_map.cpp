@@ -1,8 +1,10 @@
 #include "pipeline/shadow_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 
 #include "pipeline/silhouette.h"
 
@@ -19,6 +21,13 @@ std::optional<Rectangle> beam_of(const Light& light) {
   const double tangent = std::sqrt(1.0 - cosine * cosine) / cosine;
   if (!(tangent > 0.0 && tangent < kWidestSpot)) return {};
   return Rectangle{glm::dvec2(-tangent), glm::dvec2(tangent)};
+}
+
+bool is_thick(const PlacedObject& object, double texel_m) {
+  const glm::dmat3 world(object.object->world_from_model);
+  const double scale =
+      std::min({glm::length(world[0]), glm::length(world[1]), glm::length(world[2])});
+  return object.topology->thickness * scale >= 2.0 * texel_m;
 }
 
 }  // namespace
@@ -55,14 +64,15 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
   frame.clear({.depth = 1.0f});
   raster::State state = surface_state();
   state.depth = raster::DepthState{};
-  state.polygon_offset = plan.offset;
   state.depth_range.far = static_cast<float>(kMapDepthFar);
   for (const PlacedObject& object : objects) {
     if (!casters.contains(*object.object)) continue;
     // What of a closed body is turned from the light hides the same points, and never the lit side.
     // The map mirrors (LightView), so that side is the one that is in front here.
-    state.cull =
-        object.topology->faults.closed_manifold() ? raster::Cull::back : raster::Cull::none;
+    const bool averted = object.topology->faults.closed_manifold();
+    state.cull = averted ? raster::Cull::back : raster::Cull::none;
+    state.polygon_offset =
+        averted && is_thick(object, plan.texel_m) ? plan.offset_of_thick : plan.offset;
     PlacedObject seen = object;
     seen.clip_from_model = plan.clip_from_world * object.object->world_from_model;
     draw_depth(frame, seen, state);

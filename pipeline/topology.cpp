@@ -107,6 +107,19 @@ void build_edges(Topology& topology) {
   }
 }
 
+double thickness_of(const Topology& topology) {
+  if (!topology.closed() || topology.triangle_count() == 0) return 0.0;
+  const TrianglePlanes& planes = topology.planes;
+  double area = 0.0, volume = 0.0;
+  for (std::size_t t = 0; t < topology.triangle_count(); ++t) {
+    const glm::dvec3 normal(planes.normal_x[t], planes.normal_y[t], planes.normal_z[t]);
+    const glm::dvec3 corner(planes.corner_x[t], planes.corner_y[t], planes.corner_z[t]);
+    area += 0.5 * glm::length(normal);
+    volume += glm::dot(normal, corner - topology.low) / 6.0;
+  }
+  return area > 0.0 ? 2.0 * std::abs(volume) / area : 0.0;
+}
+
 void count_faults(Topology& topology) {
   TopologyFaults& faults = topology.faults;
   for (const Edge& edge : topology.edges) {
@@ -184,6 +197,7 @@ Topology build_topology(const Model& model) {
   count_faults(topology);
   build_pairs(topology);
   build_planes(topology);
+  topology.thickness = thickness_of(topology);
   return topology;
 }
 
