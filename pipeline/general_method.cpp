@@ -123,6 +123,7 @@ class GeneralMethod {
     options.casters = &casters;
     count_volumes(frame_, make_volumes(objects_, light, receivers_, region_, options),
                   {.appendix_letter = options_.appendix_letter,
+                   .single_sided = options_.single_sided,
                    .casters_drawn = !options_.all_caps,
                    .light_name = light.name});
   }

@@ -25,6 +25,8 @@ struct GeneralOptions {
   Counts counts = Counts::everywhere;
   /// Culled single-sided draws and saturating operations (appendix A).
   bool appendix_letter = false;
+  /// As CountOptions::single_sided.
+  bool single_sided = false;
   glm::vec4 background{0.0f, 0.0f, 0.0f, 1.0f};
   /// Topologies kept between frames; null builds them anew.
   TopologyCache* topologies = nullptr;

@@ -14,10 +14,9 @@
 #include <vector>
 
 #include "ar/stopwatch.h"
-#include "pipeline/general_method.h"
-#include "pipeline/ray_reference.h"
-#include "raster/execute.h"
-#include "tests/pipeline/stencil_check.h"
+#include "pipeline/modulative_method.h"
+#include "pipeline/shadow_map.h"
+#include "tests/pipeline/light_check.h"
 #include "tests/pipeline/test_meshes.h"
 
 namespace gnomon {
@@ -31,42 +30,10 @@ constexpr int kTimes = 5;
 struct View {
   Scene scene;
   Camera camera;
-  std::vector<RayReference::Sample> samples;
 };
-
-struct Buffers {
-  raster::ColorBuffer color{kWidth, kHeight, raster::ColorFormat::rgba32f};
-  raster::DepthBuffer depth{kWidth, kHeight};
-  raster::StencilBuffer stencil{kWidth, kHeight};
-};
-
-struct Memory {
-  TopologyCache topologies;
-  VolumeMemory volumes;
-  MapMemory maps;
-  AliasFreeMemory alias_free;
-  raster::ExecuteMemory executing;
-};
-
-/// Milliseconds of recording and executing.
-double draw(Buffers& buffers, Memory& memory, Scene scene, const Camera& camera,
-            ShadowMethod method, const MapSettings& settings) {
-  scene.lights[0].shadow = method;
-  scene.lights[0].map = settings;
-  ar::Stopwatch timer;
-  const raster::Frame frame =
-      record_general(scene, camera, {&buffers.color, &buffers.depth, &buffers.stencil},
-                     {.topologies = &memory.topologies,
-                      .volumes = &memory.volumes,
-                      .maps = &memory.maps,
-                      .alias_free = &memory.alias_free,
-                      .threads = 1});
-  raster::execute(frame, {.threads = 1, .memory = &memory.executing});
-  return timer.lap_ms();
-}
 
 struct Sum {
-  std::size_t tested = 0, dark = 0, light = 0, unexplained = 0;
+  test::LightCheck check;
   std::vector<double> times_ms;
   /// Of each scene.
   std::vector<std::size_t> wrong;
@@ -77,47 +44,23 @@ struct Sum {
   }
 };
 
-/// Adds a view's pixels, but those to which the light adds nothing, shadow or not: a round body's
-/// normals may be turned from it where its triangles are not.
-void compare(const View& view, const Buffers& unlit, const Buffers& lit, const Buffers& drawn,
-             Sum& sum) {
-  const glm::vec4 light = view.scene.lights[0].position;
-  const RayReference rays(view.scene);
-  const std::size_t before = sum.dark + sum.light;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const auto& sample = view.samples[static_cast<std::size_t>(y) * kWidth + x];
-      if (!sample.hit.hit || sample.shadow.faces_away) continue;
-      const std::uint32_t depth = drawn.depth.at(x, y);
-      if (depth == drawn.depth.max_value() || lit.color.at(x, y) == unlit.color.at(x, y)) continue;
-      ++sum.tested;
-      const bool dark = drawn.color.at(x, y) != lit.color.at(x, y);
-      if (dark == sample.shadow.blocked) continue;
-      ++(dark ? sum.dark : sum.light);
-      sum.unexplained +=
-          test::why(view.scene, rays, view.camera, light, x, y, depth, dark) == test::Reason::none;
-    }
-  }
-  sum.wrong.push_back(sum.dark + sum.light - before);
-}
-
 /// `settings_of` gives each view's settings.
 template <class SettingsOf>
 Sum measure_each(const std::vector<View>& views, ShadowMethod method, SettingsOf settings_of) {
   Sum sum;
-  Buffers unlit, lit, drawn;
-  Memory memory;
+  test::LightMemory memory;
   for (const View& view : views) {
     const MapSettings settings = settings_of(view);
-    Scene dark = view.scene;
-    dark.lights[0].color = glm::vec3(0.0f);
-    draw(unlit, memory, dark, view.camera, ShadowMethod::none, settings);
-    draw(lit, memory, view.scene, view.camera, ShadowMethod::none, settings);
-    double least_ms = draw(drawn, memory, view.scene, view.camera, method, settings);
-    for (int i = 1; i < kTimes; ++i)
-      least_ms = std::min(least_ms, draw(drawn, memory, view.scene, view.camera, method, settings));
+    double least_ms = 1e30;
+    test::LightBuffers buffers(kWidth, kHeight);
+    for (int i = 0; i < kTimes; ++i)
+      least_ms = std::min(
+          least_ms, test::draw_light(buffers, memory, view.scene, view.camera, method, settings));
     sum.times_ms.push_back(least_ms);
-    compare(view, unlit, lit, drawn, sum);
+    const test::LightCheck check =
+        test::check_light(memory, view.scene, view.camera, method, settings);
+    sum.check += check;
+    sum.wrong.push_back(check.dark + check.light);
   }
   return sum;
 }
@@ -128,9 +71,11 @@ Sum measure(const std::vector<View>& views, const MapSettings& settings,
 }
 
 void print(const std::string& name, Sum sum) {
-  std::printf("| %s | %zu | %zu | %.3f %% | %zu | %.2f |\n", name.c_str(), sum.dark, sum.light,
-              100.0 * static_cast<double>(sum.dark + sum.light) / static_cast<double>(sum.tested),
-              sum.unexplained, sum.median_ms());
+  const test::LightCheck& check = sum.check;
+  std::printf(
+      "| %s | %zu | %zu | %.3f %% | %zu | %.2f |\n", name.c_str(), check.dark, check.light,
+      100.0 * static_cast<double>(check.dark + check.light) / static_cast<double>(check.tested),
+      check.unexplained, sum.median_ms());
   std::fflush(stdout);
 }
 
@@ -139,6 +84,65 @@ void heading(const char* what) {
       "\n| %s | too dark | too light | wrong | unexplained | ms |\n"
       "| --- | --- | --- | --- | --- | --- |\n",
       what);
+}
+
+/// The median of the scenes of the least milliseconds of recording and executing.
+template <class Record>
+double time_frames(const std::vector<View>& views, test::LightMemory& memory, Record record) {
+  std::vector<double> times_ms;
+  test::LightBuffers buffers(kWidth, kHeight);
+  for (const View& view : views) {
+    double least_ms = 1e30;
+    for (int i = 0; i < kTimes; ++i) {
+      ar::Stopwatch timer;
+      const raster::Frame frame =
+          record(view, raster::Targets{&buffers.color, &buffers.depth, &buffers.stencil});
+      raster::execute(frame, {.threads = 1, .memory = &memory.executing});
+      least_ms = std::min(least_ms, timer.lap_ms());
+    }
+    times_ms.push_back(least_ms);
+  }
+  std::sort(times_ms.begin(), times_ms.end());
+  return times_ms[times_ms.size() / 2];
+}
+
+/// Every way of counting, and the two ways of darkening.
+void time_volumes(const std::vector<View>& views) {
+  test::LightMemory memory;
+  std::puts("\n| volumes | ms |\n| --- | --- |");
+  const auto print_time = [&](const char* name, const GeneralOptions& given) {
+    GeneralOptions options = given;
+    options.topologies = &memory.topologies;
+    options.volumes = &memory.volumes;
+    options.threads = 1;
+    std::printf("| %s | %.2f |\n", name,
+                time_frames(views, memory, [&](const View& view, const raster::Targets& targets) {
+                  return record_general(view.scene, view.camera, targets, options);
+                }));
+    std::fflush(stdout);
+  };
+  constexpr Extrusion kInfinite{.kind = Extrusion::Kind::infinite};
+  using enum VolumeMethod;
+  print_time("automatic, at receivers", {.counts = Counts::at_receivers});
+  print_time("automatic", {});
+  print_time("z-pass to infinity", {.method = zpass, .extrusion = kInfinite});
+  print_time("z-fail to infinity", {.method = zfail, .extrusion = kInfinite});
+  print_time("z-pass, two single-sided passes",
+             {.method = zpass, .extrusion = kInfinite, .single_sided = true});
+  print_time("z-fail, two single-sided passes",
+             {.method = zfail, .extrusion = kInfinite, .single_sided = true});
+  print_time(
+      "z-pass, degenerate quads",
+      {.method = zpass, .extrusion = kInfinite, .geometry = VolumeGeometry::degenerate_quads});
+  print_time(
+      "z-fail, degenerate quads",
+      {.method = zfail, .extrusion = kInfinite, .geometry = VolumeGeometry::degenerate_quads});
+  std::printf("| automatic, modulative quad | %.2f |\n",
+              time_frames(views, memory, [&](const View& view, const raster::Targets& targets) {
+                return record_modulative(
+                    view.scene, view.camera, targets,
+                    {.topologies = &memory.topologies, .volumes = &memory.volumes, .threads = 1});
+              }));
 }
 
 std::vector<View> make_views() {
@@ -151,8 +155,6 @@ std::vector<View> make_views() {
     const auto plan =
         plan_shadow_map(view.scene, Casters(view.scene), view.scene.lights[0], view.camera, {});
     if (!plan || plan->empty) continue;
-    const RayReference rays(view.scene);
-    view.samples = rays.cast(pixel_rays(view.camera), view.scene.lights[0].position);
     views.push_back(std::move(view));
   }
   return views;
@@ -160,7 +162,7 @@ std::vector<View> make_views() {
 
 void run() {
   const std::vector<View> views = make_views();
-  std::printf("%zu pixels\n", measure(views, {}).tested);
+  std::printf("%zu pixels\n", measure(views, {}).check.tested);
   heading("size, or method");
   for (const int size : {64, 128, 256, 512, 1024, 2048})
     print(std::to_string(size), measure(views, {.size = size}));
@@ -171,6 +173,8 @@ void run() {
   heading("size, filter 2x2 (dark: less than wholly lit)");
   for (const int size : {256, 1024})
     print(std::to_string(size), measure(views, {.size = size, .filter = raster::Filter::linear}));
+  print("six maps of 512", measure(views, {.sides = MapSides::six, .size = 512}));
+  time_volumes(views);
   const Sum found = measure(views, {.size = 512});
   std::vector<std::size_t> best = found.wrong;
   const auto sweep = [&](const std::string& name, const Sum& sum) {

@@ -5,12 +5,13 @@
 // A mesh is scaled to a bounding box of diagonal 1 m and set above a plate, three times, turned
 // differently; the light is above, a point or a direction. Each picture is counted with robust
 // volumes (z-fail, and the automatic choice) and with classical ones (z-fail), and every pixel is
-// compared with Embree's answer. Volumes of degenerate quads are compared with those of
-// silhouettes: the stencil's bytes after z-pass and z-fail, drawn two-sided and in two
-// single-sided passes, to infinity; and the milliseconds of making (least of five, after a first
-// one, on one thread) and of executing depth, volumes and counts (z-fail, the same). A wrong pixel
-// is explained where a silhouette or a shadow's edge passes within a pixel, or where two units of
-// depth decide (tests/pipeline/stencil_check.h).
+// compared with Embree's answer; so is the picture lit through a shadow map as it is found and
+// through an alias-free one (tests/pipeline/light_check.h). Volumes of degenerate quads are
+// compared with those of silhouettes: the stencil's bytes after z-pass and z-fail, drawn two-sided
+// and in two single-sided passes, to infinity; and the milliseconds of making (least of five, after
+// a first one, on one thread) and of executing depth, volumes and counts (z-fail, the same). A
+// wrong pixel is explained where a silhouette or a shadow's edge passes within a pixel, or where
+// two units of depth decide (tests/pipeline/stencil_check.h).
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -25,6 +26,7 @@
 
 #include "ar/model_file.h"
 #include "ar/stopwatch.h"
+#include "tests/pipeline/light_check.h"
 #include "tests/pipeline/stencil_check.h"
 #include "tests/pipeline/test_meshes.h"
 
@@ -80,6 +82,7 @@ struct Times {
 
 struct Row {
   test::Disagreement robust_zfail, robust_automatic, classical;
+  test::LightCheck map, alias_free;
   std::size_t bytes = 0, different = 0;
   Times silhouettes, quads;
 };
@@ -156,6 +159,9 @@ Row measure(const std::shared_ptr<const Model>& model) {
                               .extrusion = kInfinite,
                               .all_caps = true,
                               .classical = true});
+    test::LightMemory memory;
+    row.map += test::check_light(memory, scene, camera, ShadowMethod::map);
+    row.alias_free += test::check_light(memory, scene, camera, ShadowMethod::alias_free);
     compare_geometries(scene, camera, row);
     time_geometry(scene, camera, VolumeGeometry::silhouettes, row.silhouettes);
     time_geometry(scene, camera, VolumeGeometry::degenerate_quads, row.quads);
@@ -175,12 +181,16 @@ void print(const std::string& name, const Model& model, const Row& row) {
                   t.execute_ms / kPictures);
     return std::string(text);
   };
-  std::printf("| %s | %zu | %zu, %zu, %zu | %zu | %s | %s | %s | %zu of %zu | %s | %s |\n",
-              name.c_str(), topology.triangle_count(), faults.boundary_edges,
-              faults.non_manifold_edges, faults.inconsistent_edges, row.robust_zfail.tested,
-              pair(row.robust_zfail).c_str(), pair(row.robust_automatic).c_str(),
-              pair(row.classical).c_str(), row.different, row.bytes, times(row.silhouettes).c_str(),
-              times(row.quads).c_str());
+  const auto check = [](const test::LightCheck& c) {
+    return std::to_string(c.dark + c.light) + ", " + std::to_string(c.unexplained);
+  };
+  std::printf(
+      "| %s | %zu | %zu, %zu, %zu | %zu | %s | %s | %s | %s | %s | %zu of %zu | %s | %s |\n",
+      name.c_str(), topology.triangle_count(), faults.boundary_edges, faults.non_manifold_edges,
+      faults.inconsistent_edges, row.robust_zfail.tested, pair(row.robust_zfail).c_str(),
+      pair(row.robust_automatic).c_str(), pair(row.classical).c_str(), check(row.map).c_str(),
+      check(row.alias_free).c_str(), row.different, row.bytes, times(row.silhouettes).c_str(),
+      times(row.quads).c_str());
   std::fflush(stdout);
 }
 
@@ -188,9 +198,10 @@ int run(int count, char** files) {
   std::puts(
       "| mesh | triangles | open, non-manifold, inconsistent edges | pixels | robust z-fail: "
       "wrong, "
-      "unexplained | robust automatic | classical z-fail | degenerate quads: stencil bytes that "
+      "unexplained | robust automatic | classical z-fail | map | alias-free | degenerate quads: "
+      "stencil bytes that "
       "differ | silhouettes, ms | degenerate quads, ms |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
   int failed = 0;
   for (int i = 0; i < count; ++i) {
     const std::filesystem::path path = files[i];
