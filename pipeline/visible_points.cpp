@@ -69,6 +69,7 @@ void place_corners(const PlacedObject& object, int threads, WorldCorners& corner
                                 std::abs(world[1][row]) * farthest.y +
                                 std::abs(world[2][row]) * farthest.z + std::abs(world[3][row]));
   corners.error_m = 4.0 * kRounding * reach;
+  corners.apart_m = 0x1p-23 * reach;
   for (std::size_t i = 0; i < topology.indices.size(); ++i) {
     const glm::dvec3& p = corners.at[topology.indices[i]];
     corners.low = i == 0 ? p : glm::min(corners.low, p);
@@ -139,7 +140,8 @@ void PointFinder::draw_numbers(std::span<const PlacedObject> objects, raster::De
 }
 
 VisiblePoint PointFinder::point_at(std::span<const PlacedObject> objects,
-                                   const glm::dmat4& clip_from_world, int x, int y) const {
+                                   const glm::dmat4& clip_from_world, const glm::dvec4& eye, int x,
+                                   int y) const {
   VisiblePoint point;
   const glm::vec4 color = numbers_->at(x, y);
   const std::uint32_t number = digit(color.b);
@@ -161,6 +163,10 @@ VisiblePoint PointFinder::point_at(std::span<const PlacedObject> objects,
   const glm::dvec3 weights =
       weights_on_line(clip, 2.0 * (x + 0.5) / width_ - 1.0, 2.0 * (y + 0.5) / height_ - 1.0);
   point.at = (world[0] + (world[1] - world[0]) * weights.y) + (world[2] - world[0]) * weights.z;
+  const glm::dvec3 normal = glm::cross(world[1] - world[0], world[2] - world[0]);
+  const double length = glm::length(normal);
+  const double side = glm::dot(normal, glm::dvec3(eye) - world[0] * eye.w);
+  if (length > 0.0) point.at += normal * (std::copysign(corners.apart_m, side) / length);
   point.error_m = 6.0 * corners.error_m;
   point.object = part.object;
   return point;
@@ -175,10 +181,11 @@ void PointFinder::find(std::span<const PlacedObject> objects, const Camera& came
   for (std::size_t i = 0; i < objects.size(); ++i) place_corners(objects[i], threads, corners_[i]);
   points_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const glm::dmat4 clip_from_world(camera.clip_from_world);
+  const glm::dvec4 eye = eye_of(camera.clip_from_world);
   raster::for_each_chunk(points_.size(), kChunk, threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const auto columns = static_cast<std::size_t>(width);
-      points_[i] = point_at(objects, clip_from_world, static_cast<int>(i % columns),
+      points_[i] = point_at(objects, clip_from_world, eye, static_cast<int>(i % columns),
                             static_cast<int>(i / columns));
     }
   });

@@ -33,14 +33,18 @@ struct WorldCorners {
   /// No coordinate of a triangle's corner is farther from where the transform, computed without
   /// rounding, takes it.
   double error_m = 0.0;
+  /// What float32 tells apart there: surfaces that were made coplanar may lie so far apart.
+  double apart_m = 0.0;
   /// Bounds of the triangles.
   glm::dvec3 low{0.0}, high{0.0};
 };
 
 struct VisiblePoint {
   static constexpr std::uint32_t kNone = 0xffffffff;
+  /// On the visible side of the triangle, WorldCorners::apart_m before it: of coplanar surfaces the
+  /// pixel may show the one that rounding has put behind.
   glm::dvec3 at{0.0};
-  /// No coordinate of `at` is farther from the triangle as the exact transform has it.
+  /// No coordinate of `at` is farther from there.
   double error_m = 0.0;
   /// Place among the objects; kNone where no surface is.
   std::uint32_t object = kNone;
@@ -77,7 +81,7 @@ class PointFinder {
   const NumberedModel& numbered(const std::shared_ptr<const Model>& model);
   void draw_numbers(std::span<const PlacedObject> objects, raster::DepthFormat format, int threads);
   VisiblePoint point_at(std::span<const PlacedObject> objects, const glm::dmat4& clip_from_world,
-                        int x, int y) const;
+                        const glm::dvec4& eye, int x, int y) const;
 
   int width_ = 0, height_ = 0;
   std::vector<NumberedModel> models_;
