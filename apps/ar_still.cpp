@@ -35,15 +35,9 @@ void run_still(const ArArguments& arguments) {
   const ar::Image picture = ar::read_image_rgb(arguments.image);
   check_folder(arguments.out);
   refuse_to_replace(arguments.image, arguments.out / "composite.png");
-  if (!arguments.save_frame.empty()) {
-    check_folder(std::filesystem::absolute(arguments.save_frame).parent_path());
-    if (arguments.save_frame.extension() == ".png")
-      throw ar::InputError(fmt::format(
-          "--save-frame {}: a frame is no picture; name a file that does not end in .png",
-          arguments.save_frame.string()));
-  }
-  refuse_to_replace(arguments.image, arguments.save_frame);
-  refuse_to_replace(arguments.scene, arguments.save_frame);
+  std::vector<fs::path> inputs = ar::input_files(scene);
+  inputs.push_back(arguments.image);
+  check_frame_target(arguments.save_frame, inputs);
   ar::Session session(scene, picture.width, picture.height, arguments.session);
   for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
   const ar::SessionResult result = session.process(picture, 0.0);

@@ -29,6 +29,21 @@ void refuse_to_replace(const fs::path& input, const fs::path& output) {
     throw ar::InputError(output.string() + ": is the input itself; name another folder");
 }
 
+void check_frame_target(const fs::path& frame, const std::vector<fs::path>& inputs) {
+  if (frame.empty()) return;
+  std::error_code error;
+  const fs::path folder = fs::absolute(frame).parent_path();
+  if (!fs::is_directory(folder, error))
+    throw ar::InputError("--save-frame " + frame.string() + ": no folder " + folder.string());
+  check_folder(folder);
+  if (frame.extension() == ".png")
+    throw ar::InputError("--save-frame " + frame.string() +
+                         ": a frame is no picture; name a file that does not end in .png");
+  if (fs::exists(frame, error) && !fs::is_regular_file(frame, error))
+    throw ar::InputError("--save-frame " + frame.string() + ": is there and no regular file");
+  for (const fs::path& input : inputs) refuse_to_replace(input, frame);
+}
+
 void make_folder(const fs::path& out) {
   std::error_code error;
   fs::create_directories(out, error);

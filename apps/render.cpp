@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -15,6 +16,7 @@
 #include "ar/image_file.h"
 #include "ar/render_scene.h"
 #include "ar/scene_file.h"
+#include "raster/frame.h"
 
 namespace gnomon::apps {
 
@@ -86,12 +88,15 @@ void render(Options& options) {
   if (options.counting == "zfail") options.render.counting = pipeline::VolumeMethod::zfail;
   if (options.counting == "auto") options.render.counting = pipeline::VolumeMethod::automatic;
   options.render.frame = !options.save_frame.empty();
+  const ar::SceneFile scene = ar::read_scene(options.scene);
+  const std::vector<fs::path> inputs = ar::input_files(scene);
   check_folder(options.out);
-  if (options.render.frame) {
-    check_folder(fs::absolute(options.save_frame).parent_path());
-    refuse_to_replace(options.scene, options.save_frame);
-  }
-  const ar::Rendered rendered = ar::render_scene(ar::read_scene(options.scene), options.render);
+  if (options.render.steps) check_folder(options.out / "steps");
+  for (const fs::path& input : inputs)
+    for (const char* name : {"picture.png", "wrong.png"})
+      refuse_to_replace(input, options.out / name);
+  check_frame_target(options.save_frame, inputs);
+  const ar::Rendered rendered = ar::render_scene(scene, options.render);
   for (const std::string& note : rendered.notes) std::cerr << "gnomon: note: " << note << '\n';
   for (const std::string& name : rendered.left_out)
     std::cerr << "gnomon: note: object '" << name
@@ -130,8 +135,9 @@ void add_render(CLI::App& program) {
   command->add_flag("--rays", options->render.rays,
                     "Also compare each light's hard shadows with rays, and write wrong.png: red "
                     "where too dark, blue where too light");
-  command->add_flag("--steps", options->render.steps,
-                    "Also write colour, depth and stencil after every pass");
+  command->add_flag(
+      "--steps", options->render.steps,
+      "Also write colour, depth and stencil after every pass that draws into the picture");
   command->add_option("--save-frame", options->save_frame,
                       "Also write the recorded frame here, for gnomon replay");
   command->add_option("--threads", options->render.threads, "Threads (0: all of the machine)")

@@ -59,6 +59,9 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
   if (fs::is_directory(target_, error))
     throw InputError(
         fmt::format("{}: cannot be written: it is a folder", one_line(target_.string())));
+  if (fs::exists(target_, error) && !fs::is_regular_file(target_, error))
+    throw InputError(
+        fmt::format("{}: cannot be written: it is no regular file", one_line(target_.string())));
   temporary_ = folder / fmt::format(".{}.{}-{}.partial{}", target_.stem().string(), ::getpid(),
                                     counter++, target_.extension().string());
   if (!std::ofstream(temporary_, std::ios::binary))

@@ -23,7 +23,8 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path, std::uint
 /// Invariant: until commit() the target is untouched; without commit() nothing stays behind.
 class PendingFile {
  public:
-  /// Throws InputError if the folder is missing or cannot be written to, or the target is a folder.
+  /// Throws InputError if the folder is missing or cannot be written to, or the target is there and
+  /// no regular file.
   explicit PendingFile(std::filesystem::path target);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;

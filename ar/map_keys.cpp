@@ -30,7 +30,8 @@ pipeline::MapSettings read_map_settings(const TomlTable& t, pipeline::ShadowMeth
   }
   map.size = t.integer("size", 1, raster::kMaxTargetSize);
   if (const auto sides = t.integer("sides", 1, 6)) {
-    if (*sides != 1 && *sides != 6) t.fail("sides", "is not 1 or 6");
+    if (*sides != 1 && *sides != 6) t.fail("sides", fmt::format("{} is not 1 or 6", *sides));
+    if (*sides == 6 && t.has("fov_deg")) t.fail("fov_deg", "is of one map, not of sides = 6");
     map.sides = *sides == 1 ? pipeline::MapSides::one : pipeline::MapSides::six;
   }
   if (const auto fov = t.number("fov_deg", 0.1, 170.0))
@@ -38,7 +39,8 @@ pipeline::MapSettings read_map_settings(const TomlTable& t, pipeline::ShadowMeth
   if (t.has("near_m") || t.has("far_m")) {
     const double near = t.required("near_m", t.number("near_m", -kMaxMetres, kMaxMetres));
     const double far = t.required("far_m", t.number("far_m", -kMaxMetres, kMaxMetres));
-    if (!(near < far)) t.fail("far_m", fmt::format("{} is not beyond near_m {}", far, near));
+    if (!(static_cast<float>(near) < static_cast<float>(far)))
+      t.fail("far_m", fmt::format("{} is not beyond near_m {}", far, near));
     map.near_far_m = glm::vec2(near, far);
   }
   if (t.has("displace_scale") || t.has("displace_offset"))
@@ -50,7 +52,7 @@ pipeline::MapSettings read_map_settings(const TomlTable& t, pipeline::ShadowMeth
     t.fail("filter", fmt::format("'{}' is not one of nearest, linear", filter));
   map.filter = filter == "linear" ? raster::Filter::linear : raster::Filter::nearest;
   const int bits = t.integer("depth_bits", 16, 24).value_or(24);
-  if (bits != 16 && bits != 24) t.fail("depth_bits", "is not 16 or 24");
+  if (bits != 16 && bits != 24) t.fail("depth_bits", fmt::format("{} is not 16 or 24", bits));
   map.format = bits == 16 ? raster::DepthFormat::d16 : raster::DepthFormat::d24;
   return map;
 }

@@ -10,7 +10,7 @@ namespace gnomon::ar {
 /// `method`; volumes without it. Throws InputError.
 pipeline::ShadowMethod read_shadow_method(const TomlTable& t);
 
-/// The keys of a map; what is absent or "auto" is found from the scene. Throws InputError, also for
+/// The keys of a map; what is absent is found from the scene. Throws InputError, also for
 /// a key of maps where the method is another.
 pipeline::MapSettings read_map_settings(const TomlTable& t, pipeline::ShadowMethod method);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -132,10 +133,10 @@ class RayChecker {
     for (std::size_t i = 0; i < scene.objects.size(); ++i)
       scene.objects[i].casts =
           pipeline::shadow_method(scene, light, scene.objects[i]) != pipeline::ShadowMethod::none;
-    pipeline::Light unshadowed = light, off = light;
+    pipeline::Light unshadowed = light;
     unshadowed.shadow = pipeline::ShadowMethod::none;
     unshadowed.shadow_of_object.clear();
-    off = unshadowed;
+    pipeline::Light off = unshadowed;
     off.color = glm::vec3(0.0f);
     const raster::ColorBuffer shadowed = draw(scene, light), lit = draw(scene, unshadowed),
                               dark = draw(scene, off);
@@ -144,9 +145,11 @@ class RayChecker {
     for (int y = 0; y < camera_.height; ++y) {
       for (int x = 0; x < camera_.width; ++x) {
         if (lit.at(x, y) == dark.at(x, y)) continue;
+        const auto& sample = samples[static_cast<std::size_t>(y) * camera_.width + x];
+        // Nothing falls on it, whatever is in the way.
+        if (sample.hit.hit && !scene.objects[sample.hit.object].receives) continue;
         const bool is_dark = shadowed.at(x, y) != lit.at(x, y);
-        const bool in_shadow =
-            samples[static_cast<std::size_t>(y) * camera_.width + x].shadow.in_shadow;
+        const bool in_shadow = sample.shadow.in_shadow;
         ++result.tested;
         result.in_shadow += in_shadow;
         if (is_dark == in_shadow) continue;
@@ -173,7 +176,9 @@ class RayChecker {
 
 }  // namespace
 
-Rendered render_scene(const SceneFile& file, const RenderOptions& options) {
+namespace {
+
+Rendered render(const SceneFile& file, const RenderOptions& options) {
   Rendered out;
   const SceneNodes nodes(file, load_models(file, &out.notes));
   out.left_out = nodes.left_out();
@@ -226,6 +231,17 @@ Rendered render_scene(const SceneFile& file, const RenderOptions& options) {
       out.checks.push_back(checker.check(scene, light, out.wrong));
   }
   return out;
+}
+
+}  // namespace
+
+Rendered render_scene(const SceneFile& file, const RenderOptions& options) {
+  try {
+    return render(file, options);
+  } catch (const std::invalid_argument& misuse) {
+    // What only the scene as a whole shows: nested scales, a lamp's planes.
+    throw InputError(fmt::format("{}: {}", one_line(file.file.string()), misuse.what()));
+  }
 }
 
 }  // namespace gnomon::ar

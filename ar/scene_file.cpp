@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMaxSceneBytes = 1 << 20;
 constexpr int kMaxTagNumber = 1'000'000;
 constexpr int kMaxSamples = 1024;
+constexpr int kMaxGroupDepth = 200;
 class SceneReader {
  public:
   explicit SceneReader(const fs::path& path) { scene_.file = path; }
@@ -93,8 +94,8 @@ class SceneReader {
     const TomlTable t(scene_.file, *table, "[camera]",
                       {"file", "width", "height", "fov_y_deg", "near_m", "far_m",
                        "world_from_camera", "axes", "eye_m", "target_m", "up"});
-    if (t.has("file") && t.has("fov_y_deg"))
-      t.fail("fov_y_deg", "together with file: give one of them");
+    for (const char* key : {"fov_y_deg", "width", "height"})
+      if (t.has("file") && t.has(key)) t.fail(key, "together with file, which says it");
     if (t.has("fov_y_deg") || !t.has("file"))
       scene_.pinhole = read_pinhole(t);
     else
@@ -240,6 +241,11 @@ class SceneReader {
     group.name = unique_name(t, group_names_);
     if (group.name == "world" || body_names_.contains(group.name))
       t.fail("name", fmt::format("'{}' is the world's or a [[body]]'s", group.name));
+    const auto above = group_depths_.find(group.attached_to);
+    const int depth = above == group_depths_.end() ? 1 : above->second + 1;
+    if (depth > kMaxGroupDepth)
+      t.fail("attached_to", fmt::format("lies more than {} groups deep", kMaxGroupDepth));
+    group_depths_[group.name] = depth;
     group.parent_from_group = read_pose(t, "parent_from_group", true);
     scene_.groups.push_back(std::move(group));
   }
@@ -283,6 +289,7 @@ class SceneReader {
     }
     const std::string name = t.required("node", t.text("node"));
     const fs::path model = t.required("model", t.file("model"));
+    scene_.light_models.push_back(model);
     for (const GltfNode& node : read_gltf_nodes(model))
       if (node.name == name) return {glm::vec3(node.center_m), 1.0f};
     t.fail("node", fmt::format("no node '{}' in {}", name, model.string()));
@@ -340,8 +347,13 @@ class SceneReader {
                        "displace_scale", "displace_offset", "filter", "depth_bits"});
     SceneCaster caster;
     caster.node = t.text("node").value_or("");
-    if (!caster.node.empty() && !object_names_.contains(caster.node) &&
-        !group_names_.contains(caster.node) && !body_names_.contains(caster.node))
+    const bool object = object_names_.contains(caster.node);
+    const bool carrier = group_names_.contains(caster.node) || body_names_.contains(caster.node);
+    if (object && carrier)
+      t.fail("node",
+             fmt::format("'{}' is an [[object]] and also a [[group]] or [[body]]", caster.node));
+    // A tags.yaml brings bodies of its own.
+    if (!caster.node.empty() && !object && !carrier && !scene_.tags_yaml)
       t.fail("node", fmt::format("'{}' is no [[object]], [[group]] or [[body]]", caster.node));
     caster.light = t.text("light").value_or("");
     if (!caster.light.empty() && !light_names_.contains(caster.light))
@@ -396,6 +408,7 @@ class SceneReader {
   SceneFile scene_;
   bool families_given_ = false;
   std::set<std::string> dictionary_names_, body_names_, group_names_, object_names_, light_names_;
+  std::map<std::string, int> group_depths_;
   std::set<TagId> tags_;
 };
 
@@ -411,6 +424,17 @@ void require_photograph(const SceneFile& scene) {
   if (!scene.world_from_camera && !tags && !scene.tags_yaml)
     throw InputError(fmt::format(
         "{}: tag: missing: without tags the camera needs [camera].world_from_camera", file));
+}
+
+std::vector<fs::path> input_files(const SceneFile& scene) {
+  std::vector<fs::path> files{scene.file};
+  if (!scene.camera_file.empty()) files.push_back(scene.camera_file);
+  if (scene.response_file) files.push_back(*scene.response_file);
+  if (scene.tags_yaml) files.push_back(scene.tags_yaml->file);
+  for (const CustomDictionary& dictionary : scene.dictionaries) files.push_back(dictionary.file);
+  for (const SceneObject& object : scene.objects) files.push_back(object.model);
+  files.insert(files.end(), scene.light_models.begin(), scene.light_models.end());
+  return files;
 }
 
 std::vector<std::shared_ptr<const pipeline::Model>> load_models(const SceneFile& scene,

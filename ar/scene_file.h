@@ -109,6 +109,8 @@ struct SceneFile {
   /// In the space of what carries them, which is named one by one as in SceneObject.
   std::vector<pipeline::Light> lights;
   std::vector<std::string> light_attached_to;
+  /// The files that lights take a node from.
+  std::vector<std::filesystem::path> light_models;
   std::vector<SceneCaster> casters;
   glm::vec3 ambient{0.3f};
   ShadowSettings shadow;
@@ -122,6 +124,9 @@ SceneFile read_scene(const std::filesystem::path& path);
 
 /// Throws InputError unless the scene can be put into a photograph: a camera, and tags or a pose.
 void require_photograph(const SceneFile& scene);
+
+/// Every file that the scene names, and the scene file itself; not what those name in turn.
+std::vector<std::filesystem::path> input_files(const SceneFile& scene);
 
 /// The model of each object, in the order of scene.objects; a file that several objects name is
 /// read once and shared. Notes of the reader go to `notes` if given. Throws InputError.

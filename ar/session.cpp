@@ -91,12 +91,17 @@ struct Session::Impl {
     layout.bodies.insert(layout.bodies.end(), read.bodies.begin(), read.bodies.end());
   }
 
+  std::string yaml_name() const {
+    return file.tags_yaml ? file.tags_yaml->file.string() : "a tags_yaml";
+  }
+
   /// Bodies of a ROS file are only known here; the scene file's own were checked by its reader.
   void check_bodies() const {
     for (const std::string& name : nodes->bodies()) {
       const auto named = [&](const TaggedBody& body) { return body.name == name; };
       if (std::ranges::none_of(layout.bodies, named))
-        throw InputError(file.file.string() + ": attached_to: there is no body '" + name + "'");
+        throw InputError(file.file.string() + ": attached_to or node: there is no body '" + name +
+                         "', neither a [[body]] nor in " + yaml_name());
     }
   }
 

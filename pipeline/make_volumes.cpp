@@ -188,6 +188,8 @@ std::shared_ptr<const DegenerateQuads> VolumeMemory::quads(
   for (const Extended& known : extended_) {
     if (known.topology == topology && known.quads->both_sides == both_sides) return known.quads;
   }
+  // Topologies that nobody else holds do not come again.
+  std::erase_if(extended_, [](const Extended& known) { return known.topology.use_count() == 1; });
   extended_.push_back({topology, std::make_shared<const DegenerateQuads>(
                                      add_degenerate_quads(*topology, both_sides))});
   return extended_.back().quads;

@@ -50,7 +50,7 @@ constexpr double kWidest = 5.67128181961771;
 /// A map that is found has so many texels at least, and a multiple of them.
 constexpr int kSizeStep = 64;
 /// Nearest distance that a map tells apart where casters come up to the light, of the farthest.
-constexpr double kNearest = 0x1p-12;
+constexpr double kNearest = 0x1p-6;
 
 /// What lies before the eye and between the sides of its view.
 std::array<HalfSpace, 5> view_of(const Camera& camera) {
@@ -144,7 +144,7 @@ int size_for(const LightView& view, const Rectangle& rectangle, std::vector<Poly
       wanted = std::max(wanted, extent * view.metres(view.local(p)) / pixel_m);
     }
   }
-  // The margin takes four (plan_shadow_map).
+  // The margin takes four (MapPlanner::plan).
   wanted += 4.0;
   if (!(wanted < largest)) return largest;
   return std::min(largest, (static_cast<int>(wanted) / kSizeStep + 1) * kSizeStep);
@@ -248,6 +248,7 @@ std::optional<MapPlan> MapPlanner::plan(const LightView& view,
   if (!(span.near <= span.far) || rectangle.empty()) return MapPlan{.empty = true};
 
   MapPlan plan;
+  plan.light = light_.position;
   plan.size = settings_.size
                   ? *settings_.size
                   : size_for(view, rectangle, receivers, camera_, settings_.largest_size);

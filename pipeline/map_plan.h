@@ -2,7 +2,8 @@
 // scale and offset - found from the scene.
 // Invariant: a map holds every point that a visible receiver's shadow can come from; its texels are
 // no coarser than the receivers' pixels unless the largest size is reached; a flat surface does not
-// shadow itself. The reasons stand in map_plan.cpp.
+// shadow itself, unless it is a thin part of a closed body that is thick in the mean. The reasons
+// stand in map_plan.cpp.
 #pragma once
 
 #include <optional>
@@ -22,6 +23,8 @@ namespace gnomon::pipeline {
 struct MapPlan {
   /// No caster can shadow a visible receiver: no map is needed.
   bool empty = false;
+  /// Light::position.
+  glm::vec4 light{0.0f};
   glm::mat4 clip_from_world{1.0f};
   int size = 0;
   /// Metres that a texel is wide at the farthest caster.

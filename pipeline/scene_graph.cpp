@@ -16,6 +16,8 @@ namespace {
 
 /// A graph deeper than this is refused: it is walked by recursion.
 constexpr std::size_t kDeepest = 1000;
+/// A node that hangs in two places has its children twice: they could double at every level.
+constexpr std::size_t kMostPlaces = 1'000'000;
 
 [[noreturn]] void refuse(const Node& node, const char* what) {
   throw std::invalid_argument("node '" + node.name + "': " + what);
@@ -26,7 +28,16 @@ void require_transform(const Node& node) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
       if (!std::isfinite(m[column][row])) refuse(node, "its transform is not finite");
-  if (glm::determinant(glm::mat3(m)) == 0.0f) refuse(node, "its transform cannot be inverted");
+  if (glm::determinant(glm::dmat3(m)) == 0.0) refuse(node, "its transform cannot be inverted");
+}
+
+/// Nested transforms may leave float32's range.
+void require_in_range(const Node& node, const glm::dmat4& world_from_node) {
+  const glm::mat4 world(world_from_node);
+  const double determinant = glm::determinant(glm::dmat3(glm::dmat4(world)));
+  const float float_determinant = glm::determinant(glm::mat3(world));
+  if (!std::isfinite(determinant) || !std::isfinite(float_determinant) || float_determinant == 0.0f)
+    refuse(node, "with all above it, its transform is out of range");
 }
 
 /// Without a length it stays what it is: whoever uses it refuses it.
@@ -67,6 +78,7 @@ class Flattener {
   void walk(const Node& node, const glm::dmat4& world_from_parent, bool on) {
     if (std::ranges::find(path_, &node) != path_.end()) refuse(node, "it contains itself");
     if (path_.size() == kDeepest) refuse(node, "it lies more than 1000 nodes deep");
+    if (++walked_ > kMostPlaces) refuse(node, "more than a million places in the graph");
     require_transform(node);
     const glm::dmat4 world_from_node = world_from_parent * node.parent_from_node;
     path_.push_back(&node);
@@ -83,6 +95,7 @@ class Flattener {
   void add(const Node& node, const glm::dmat4& world_from_node) {
     if (const auto* geometry = std::get_if<Geometry>(&node.content)) {
       if (!geometry->model) refuse(node, "a geometry has a model");
+      require_in_range(node, world_from_node);
       scene_.objects.push_back({node.name, geometry->role, geometry->model,
                                 glm::mat4(world_from_node), geometry->casts, geometry->receives});
       object_paths_.push_back(path_);
@@ -132,6 +145,7 @@ class Flattener {
   }
 
   Scene scene_;
+  std::size_t walked_ = 0;
   Path path_;
   /// Every node once for each place it hangs in.
   std::vector<const Node*> nodes_, shadows_;

@@ -61,9 +61,10 @@ NodePointer make_node(std::string name, const glm::dmat4& parent_from_node = glm
 /// The scene that the graph describes: objects and lights in the order of the graph (a node before
 /// its children), with ambient light 0.3. An object or light is named by its node.
 /// Errors (std::invalid_argument, as raster::require), with the node's name: a node that contains
-/// itself or a null child; a transform that is not finite or not invertible; a geometry without a
-/// model; a caster or light that is not in the graph, or a shadow's light that is none; two shadow
-/// nodes that give one object and light different methods, or one light different maps.
+/// itself or a null child; more than 1000 levels or a million places; a transform that is not
+/// finite or not invertible; a geometry without a model; a caster or light that is not in the
+/// graph, or a shadow's light that is none; two shadow nodes that give one object and light
+/// different methods, or one light different maps.
 Scene flatten(const Node& root);
 
 }  // namespace gnomon::pipeline

@@ -23,7 +23,10 @@ std::optional<Rectangle> beam_of(const Light& light) {
   return Rectangle{glm::dvec2(-tangent), glm::dvec2(tangent)};
 }
 
-bool is_thick(const PlacedObject& object, double texel_m) {
+/// With the light inside, the averted faces are the ones that are seen.
+bool is_thick(const PlacedObject& object, const glm::vec4& light, double texel_m) {
+  if (casts_both_sides(*object.topology, light_in_model(light, object.object->world_from_model)))
+    return false;
   const glm::dmat3 world(object.object->world_from_model);
   const double scale =
       std::min({glm::length(world[0]), glm::length(world[1]), glm::length(world[2])});
@@ -72,7 +75,7 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
     const bool averted = object.topology->faults.closed_manifold();
     state.cull = averted ? raster::Cull::back : raster::Cull::none;
     state.polygon_offset =
-        averted && is_thick(object, plan.texel_m) ? plan.offset_of_thick : plan.offset;
+        averted && is_thick(object, plan.light, plan.texel_m) ? plan.offset_of_thick : plan.offset;
     PlacedObject seen = object;
     seen.clip_from_model = plan.clip_from_world * object.object->world_from_model;
     draw_depth(frame, seen, state);

@@ -34,7 +34,9 @@ const char* cube_side_name(int side) {
 std::array<MapPlan, kCubeSides> plan_six_maps(const Scene& scene, const Casters& casters,
                                               const Light& light, const Camera& camera,
                                               const MapSettings& settings) {
-  const MapPlanner planner(scene, casters, light, camera, settings);
+  MapSettings of_sides = settings;
+  of_sides.sides = MapSides::six;
+  const MapPlanner planner(scene, casters, light, camera, of_sides);
   std::array<MapPlan, kCubeSides> plans;
   for (int side = 0; side < kCubeSides; ++side)
     plans[static_cast<std::size_t>(side)] = *planner.plan(view_of_side(light, side), whole_side());

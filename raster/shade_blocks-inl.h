@@ -315,7 +315,7 @@ HWY_INLINE void flush(const TileShading& s, PackedPixels& pixels, std::uint32_t*
   alignas(64) float planes[3][PackedPixels::kMost + kPixels];
   const TileWeights& w = s.weights;
   const auto low = hn::Set(place_d, 7), high = hn::Set(place_d, 56);
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+  for (std::size_t i = 0; i < (count + lanes - 1) / lanes * lanes; i += hn::Lanes(d)) {
     const auto place = hn::LoadU(place_d, reinterpret_cast<const std::int32_t*>(pixels.place) + i);
     const auto x =
         hn::PromoteTo(d, hn::Or(hn::And(hn::ShiftRight<3>(place), high), hn::And(place, low)));

@@ -290,7 +290,7 @@ node = "table"
 light = "spot"
 method = "map"
 size = 512
-sides = 6
+sides = 1
 fov_deg = 90
 near_m = 0.1
 far_m = 5
@@ -335,7 +335,7 @@ TEST(SceneFile, CastersSayWhoCastsWhichShadowAndHow) {
                   ElementsAre(cup_first ? map : none, cup_first ? none : map));
     if (light.name != "spot") continue;
     EXPECT_EQ(light.map.size, 512);
-    EXPECT_EQ(light.map.sides, pipeline::MapSides::six);
+    EXPECT_EQ(light.map.sides, pipeline::MapSides::one);
     EXPECT_NEAR(light.map.fov_tangent.value(), 1.0f, 1e-6f);
     EXPECT_EQ(light.map.near_far_m, glm::vec2(0.1f, 5.0f));
     EXPECT_EQ(light.map.offset->factor, 1.5f);
@@ -390,11 +390,15 @@ TEST(SceneFile, SaysWhatIsWrongWithNodesAndCasters) {
       {"light = \"spot\"", "light = \"moon\"", "[caster].light: 'moon' is no [[light]]"},
       {"method = \"map\"", "method = \"ray\"", "[caster].method: 'ray' is not one of volumes, map"},
       {"method = \"map\"\n", "", "[caster].size: is a shadow map's: give method = \"map\""},
-      {"sides = 6", "sides = 3", "[caster].sides: is not 1 or 6"},
+      {"sides = 1", "sides = 3", "[caster].sides: 3 is not 1 or 6"},
+      {"sides = 1", "sides = 6", "[caster].fov_deg: is of one map, not of sides = 6"},
+      {"name = \"tray\"", "name = \"cup\"", "[object 'cup'].attached_to: 'tray' is neither"},
+      {"file = \"camera.yml\"", "file = \"camera.yml\"\nwidth = 640",
+       "[camera].width: together with file"},
       {"far_m = 5\n", "", "[caster].far_m: missing"},
       {"far_m = 5\n", "far_m = 0.05\n", "[caster].far_m: 0.05 is not beyond near_m 0.1"},
       {"filter = \"linear\"", "filter = \"soft\"", "[caster].filter: 'soft' is not one of"},
-      {"depth_bits = 16", "depth_bits = 20", "[caster].depth_bits: is not 16 or 24"},
+      {"depth_bits = 16", "depth_bits = 20", "[caster].depth_bits: 20 is not 16 or 24"},
       {"file = \"camera.yml\"", "fov_y_deg = 40\neye_m = [0, 1, 0]\ntarget_m = [0, 0, 0]",
        "[camera].target_m: the eye looks along the direction that is up"},
       {"file = \"camera.yml\"", "eye_m = [0, 1, 0]",
