@@ -31,8 +31,9 @@ struct ModulativeOptions {
 /// volumes, whatever method but `none` the light names. Labels: "lit scene", then "shadow volumes:
 /// LIGHT" and "shadow quad: LIGHT". The quad replaces the stencil by 0 whether a fragment passes or
 /// fails, as the paper's does: each pixel darkens once a light, and the stencil is 0 again. Pixels
-/// without a surface keep their colour, which the paper's quad would darken. Preconditions: all
-/// three targets; `scene` outlives the execution of the frame.
+/// without a surface keep their colour, which the paper's quad would darken. A spot's shadow is
+/// darkened outside its beam too. Preconditions: all three targets; `scene` outlives the execution
+/// of the frame.
 raster::Frame record_modulative(const Scene& scene, const Camera& camera,
                                 const raster::Targets& targets,
                                 const ModulativeOptions& options = {});

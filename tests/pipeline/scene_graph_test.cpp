@@ -143,6 +143,9 @@ TEST(SceneGraph, MovingATransformMovesTheShadow) {
     const auto moved = picture_of(flatten(*graph.root)).to_rgba8_rows();
     EXPECT_EQ(moved, picture_of(flatten(*elsewhere.root)).to_rgba8_rows());
     EXPECT_NE(moved, before.to_rgba8_rows());
+    // There is a shadow to be moved.
+    std::get<Shadow>(graph.root->children.back()->content).method = ShadowMethod::none;
+    EXPECT_NE(moved, picture_of(flatten(*graph.root)).to_rgba8_rows());
   }
 }
 
@@ -156,8 +159,10 @@ TEST(SceneGraph, OnlyTheCasterOfAShadowNodeDarkens) {
       std::get<Geometry>(node->content).casts = false;
     for (const NodePointer& node : {plain.lamp1, plain.sun})
       std::get<LightSource>(node->content).light.shadow = method;
-    EXPECT_EQ(picture_of(flatten(*graph.root)).to_rgba8_rows(),
-              picture_of(flatten(*plain.root)).to_rgba8_rows());
+    const auto shadowed = picture_of(flatten(*graph.root)).to_rgba8_rows();
+    EXPECT_EQ(shadowed, picture_of(flatten(*plain.root)).to_rgba8_rows());
+    std::get<Shadow>(graph.root->children.back()->content).method = ShadowMethod::none;
+    EXPECT_NE(shadowed, picture_of(flatten(*graph.root)).to_rgba8_rows());
   }
 }
 

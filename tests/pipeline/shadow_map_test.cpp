@@ -122,8 +122,7 @@ TEST(ShadowMap, ASheetAcrossTheLightShadowsWhatLiesBelow) {
 }
 
 // A plate a tenth of a millimetre thick is closed, and its averted face as good as in its lit one.
-// Oracle: no shadow falls on it. Without
-// the factor there is acne, so the test can fail.
+// Oracle: no shadow falls on it. Without the factor there is acne, so the test can fail.
 TEST(ShadowMap, AThinClosedPlateDoesNotShadowItself) {
   Scene scene;
   scene.objects.push_back(
@@ -147,6 +146,33 @@ TEST(ShadowMap, AThinClosedPlateDoesNotShadowItself) {
   }
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(acne, 500u);
+}
+
+// A closed room that is lit from within shows the very faces that its map holds, all of them turned
+// from the lamp by their winding: they need the slope's factor. Oracle: nothing is in it that
+// casts, so nothing is dark.
+TEST(ShadowMap, AClosedRoomDoesNotShadowItsOwnWalls) {
+  Scene scene;
+  auto model = std::make_shared<Model>(*test::model_of(test::flat_box_mesh(glm::vec3(2.0f))));
+  for (Part& part : model->parts) part.two_sided = true;
+  scene.objects.push_back({.name = "room", .model = model});
+  scene.lights.push_back({.name = "lamp", .position = {0.7f, 0.6f, -0.3f, 1.0f}});
+  const Camera camera = test::look({-1.5f, 1.2f, 1.5f}, glm::vec3(0.0f), kWidth, kHeight, 80.0f);
+  Picture dark, lit, found;
+  Scene unlit = scene;
+  unlit.lights[0].color = glm::vec3(0.0f);
+  draw(dark, with(unlit, ShadowMethod::none), camera);
+  draw(lit, with(scene, ShadowMethod::none), camera);
+  draw(found, with(scene, ShadowMethod::map, {.size = 200}), camera);
+  std::size_t wrong = 0, reached = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      reached += lit.color.at(x, y) != dark.color.at(x, y);
+      wrong += found.color.at(x, y) != lit.color.at(x, y);
+    }
+  }
+  EXPECT_GT(reached, 20000u);
+  EXPECT_EQ(wrong, 0u);
 }
 
 // AFlatSheetDoesNotShadowItself can fail: without the offset there is acne.
