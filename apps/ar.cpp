@@ -4,6 +4,7 @@
 
 #include "apps/ar_arguments.h"
 #include "apps/commands.h"
+#include "apps/counting.h"
 #include "ar/error.h"
 
 namespace gnomon::apps {
@@ -14,9 +15,7 @@ void run(ArArguments& arguments) {
   const int inputs = !arguments.image.empty() + !arguments.video.empty() + (arguments.camera >= 0);
   if (inputs != 1)
     throw ar::InputError("ar: exactly one of --image, --video and --camera is needed");
-  if (arguments.method == "zpass") arguments.session.method = pipeline::VolumeMethod::zpass;
-  if (arguments.method == "zfail") arguments.session.method = pipeline::VolumeMethod::zfail;
-  if (arguments.method == "auto") arguments.session.method = pipeline::VolumeMethod::automatic;
+  arguments.session.method = counting_named(arguments.method);
   arguments.session.steps = arguments.steps;
   arguments.session.frame = !arguments.save_frame.empty();
   if (!arguments.image.empty()) return run_still(arguments);

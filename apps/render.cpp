@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
+#include "apps/counting.h"
 #include "apps/output_folder.h"
 #include "apps/step_pictures.h"
 #include "ar/error.h"
@@ -84,9 +85,7 @@ void render(Options& options) {
   if (options.method == "modulative") options.render.method = ar::RenderMethod::modulative;
   if (options.render.method == ar::RenderMethod::modulative && options.render.rays)
     throw ar::InputError("--rays goes with --method additive");
-  if (options.counting == "zpass") options.render.counting = pipeline::VolumeMethod::zpass;
-  if (options.counting == "zfail") options.render.counting = pipeline::VolumeMethod::zfail;
-  if (options.counting == "auto") options.render.counting = pipeline::VolumeMethod::automatic;
+  options.render.counting = counting_named(options.counting);
   options.render.frame = !options.save_frame.empty();
   const ar::SceneFile scene = ar::read_scene(options.scene);
   const std::vector<fs::path> inputs = ar::input_files(scene);

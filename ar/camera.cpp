@@ -42,6 +42,20 @@ glm::dvec2 through(const glm::dmat3& m, glm::dvec2 p) {
 
 }  // namespace
 
+CameraModel pinhole_camera(int width, int height, double focal_px) {
+  CameraModel camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = focal_px;
+  camera.cx = (width - 1) / 2.0;
+  camera.cy = (height - 1) / 2.0;
+  return camera;
+}
+
+double focal_for(int height, double fov_y_rad) {
+  return height / (2.0 * std::tan(fov_y_rad / 2.0));
+}
+
 CameraModel camera_for_picture(const CameraModel& camera, int width, int height) {
   raster::require(width > 0 && height > 0, "a picture has pixels");
   CameraModel result = camera;

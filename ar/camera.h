@@ -31,6 +31,12 @@ struct CameraModel {
   std::vector<double> distortion;
 };
 
+/// Square pixels, no distortion, the axis through the picture's middle.
+CameraModel pinhole_camera(int width, int height, double focal_px);
+
+/// Pixels from the eye to a picture of this height with this field of view.
+double focal_for(int height, double fov_y_rad);
+
 /// Reads OpenCV YAML, ROS camera_info (YAML or JSON, file or message form) or BoofCV's pinhole
 /// YAML.
 /// Errors: InputError for a file over 4 MiB, not YAML, without a camera matrix, with numbers that

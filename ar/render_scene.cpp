@@ -66,15 +66,11 @@ CameraModel camera_model(const SceneFile& file, const RenderOptions& options) {
                                    one_line(file.camera_file.string())));
     return camera_for_picture(camera, width, height);
   }
-  CameraModel camera;
-  camera.width = options.width > 0 ? options.width : file.pinhole ? file.pinhole->width : 640;
-  camera.height = options.height > 0 ? options.height : file.pinhole ? file.pinhole->height : 480;
-  camera.fx = file.pinhole ? file.pinhole->fy * camera.height / file.pinhole->height
-                           : camera.height / (2.0 * std::tan(glm::radians(kFovDeg / 2.0)));
-  camera.fy = camera.fx;
-  camera.cx = (camera.width - 1) / 2.0;
-  camera.cy = (camera.height - 1) / 2.0;
-  return camera;
+  const CameraModel given =
+      file.pinhole.value_or(pinhole_camera(640, 480, focal_for(480, glm::radians(kFovDeg))));
+  const int width = options.width > 0 ? options.width : given.width;
+  const int height = options.height > 0 ? options.height : given.height;
+  return pinhole_camera(width, height, given.fy * height / given.height);
 }
 
 pipeline::Camera camera_for(const SceneFile& file, const PinholeView& view,

@@ -110,14 +110,10 @@ class SceneReader {
 
   static CameraModel read_pinhole(const TomlTable& t) {
     if (!t.has("fov_y_deg")) t.fail("file", "missing: give file, or fov_y_deg with width, height");
-    CameraModel camera;
-    camera.width = t.integer("width", 1, raster::kMaxTargetSize).value_or(640);
-    camera.height = t.integer("height", 1, raster::kMaxTargetSize).value_or(480);
+    const int width = t.integer("width", 1, raster::kMaxTargetSize).value_or(640);
+    const int height = t.integer("height", 1, raster::kMaxTargetSize).value_or(480);
     const double fov = glm::radians(*t.number("fov_y_deg", 1.0, 170.0));
-    camera.fx = camera.fy = camera.height / (2.0 * std::tan(fov / 2.0));
-    camera.cx = (camera.width - 1) / 2.0;
-    camera.cy = (camera.height - 1) / 2.0;
-    return camera;
+    return pinhole_camera(width, height, focal_for(height, fov));
   }
 
   void read_camera_pose(const TomlTable& t) {

@@ -29,7 +29,6 @@ class SceneNodes {
   /// Names of the objects that hang on a body that is not seen.
   std::vector<std::string> left_out() const;
 
-  const pipeline::Node& root() const { return *root_; }
   /// The graph flattened, with the scene file's ambient light. Throws InputError about [[caster]]
   /// tables that contradict each other.
   pipeline::Scene scene() const;

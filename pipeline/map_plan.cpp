@@ -45,8 +45,6 @@ namespace gnomon::pipeline {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Tangent of half the angle of view that one map serves, 80 degrees.
-constexpr double kWidest = 5.67128181961771;
 /// A map that is found has so many texels at least, and a multiple of them.
 constexpr int kSizeStep = 64;
 /// Nearest distance that a map tells apart where casters come up to the light, of the farthest.
@@ -168,8 +166,8 @@ CasterSpan span_of_casters(const Scene& scene, const Casters& casters, const Lig
       span.far = std::max(span.far, local.z);
       const bool ahead = !view.is_point() || local.z > 0.0;
       if (ahead) span.places.add(view.place(local));
-      span.in_reach =
-          span.in_reach && (!view.is_point() || glm::length(glm::dvec2(local)) < kWidest * local.z);
+      span.in_reach = span.in_reach &&
+                      (!view.is_point() || glm::length(glm::dvec2(local)) < kWidestMap * local.z);
     }
   });
   return span;

@@ -37,6 +37,9 @@ struct MapPlan {
 /// The casters' part of a map's depths. A power of two less than 1, so that float32 has it.
 inline constexpr double kMapDepthFar = 1.0 - 1.0 / 1024.0;
 
+/// Tangent of half the widest angle of view that one map serves, 80 degrees.
+inline constexpr double kWidestMap = 5.67128181961771;
+
 /// Plans the maps of one light. Refers to its arguments.
 class MapPlanner {
  public:

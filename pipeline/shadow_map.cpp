@@ -11,15 +11,12 @@
 namespace gnomon::pipeline {
 namespace {
 
-/// Tangent of 80 degrees: the widest spot that one map about its axis serves.
-constexpr double kWidestSpot = 5.67128181961771;
-
 /// What a spot lights, if one map can show it.
 std::optional<Rectangle> beam_of(const Light& light) {
   const double cosine = light.spot_cos_cutoff;
   if (light.position.w == 0.0f || !(cosine > 0.0)) return {};
   const double tangent = std::sqrt(1.0 - cosine * cosine) / cosine;
-  if (!(tangent > 0.0 && tangent < kWidestSpot)) return {};
+  if (!(tangent > 0.0 && tangent < kWidestMap)) return {};
   return Rectangle{glm::dvec2(-tangent), glm::dvec2(tangent)};
 }
 

@@ -62,8 +62,6 @@ class PointFinder {
   void find(std::span<const PlacedObject> objects, const Camera& camera, int width, int height,
             raster::DepthFormat format, int threads);
 
-  int width() const { return width_; }
-  int height() const { return height_; }
   std::span<const VisiblePoint> points() const { return points_; }
   std::span<const WorldCorners> corners() const { return corners_; }
 

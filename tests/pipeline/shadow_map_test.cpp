@@ -12,6 +12,7 @@
 #include "pipeline/general_method.h"
 #include "pipeline/ray_reference.h"
 #include "raster/execute.h"
+#include "tests/pipeline/light_check.h"
 #include "tests/pipeline/test_meshes.h"
 
 namespace gnomon::pipeline {
@@ -19,10 +20,8 @@ namespace {
 
 constexpr int kWidth = 200, kHeight = 150;
 
-struct Picture {
-  raster::ColorBuffer color{kWidth, kHeight, raster::ColorFormat::rgba32f};
-  raster::DepthBuffer depth{kWidth, kHeight};
-  raster::StencilBuffer stencil{kWidth, kHeight};
+struct Picture : test::LightBuffers {
+  Picture() : LightBuffers(kWidth, kHeight) {}
 
   bool shows_surface(int x, int y) const { return depth.at(x, y) != depth.max_value(); }
 };

@@ -10,6 +10,7 @@
 #include "pipeline/general_method.h"
 #include "pipeline/ray_reference.h"
 #include "raster/execute.h"
+#include "tests/pipeline/light_check.h"
 #include "tests/pipeline/test_meshes.h"
 
 namespace gnomon::pipeline {
@@ -17,10 +18,8 @@ namespace {
 
 constexpr int kWidth = 200, kHeight = 150;
 
-struct Picture {
-  raster::ColorBuffer color{kWidth, kHeight, raster::ColorFormat::rgba32f};
-  raster::DepthBuffer depth{kWidth, kHeight};
-  raster::StencilBuffer stencil{kWidth, kHeight};
+struct Picture : test::LightBuffers {
+  Picture() : LightBuffers(kWidth, kHeight) {}
 };
 
 void draw(Picture& picture, Scene scene, const Camera& camera, ShadowMethod method,
