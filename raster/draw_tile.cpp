@@ -157,6 +157,19 @@ BoxBlocks blocks_of(const PixelBox& box) {
   return {row * 0x0101010101010101u & rows, width * height};
 }
 
+/// The blocks of the tile at (x0, y0) that lie wholly in a box of the target's pixels.
+BlockMask blocks_inside(const PixelBox& box, int x0, int y0) {
+  const auto first = [](int pixel) {
+    return (std::max(pixel, 0) + kBlockSize - 1) / kBlockSize * kBlockSize;
+  };
+  const auto end = [](int pixel) {
+    return std::clamp(pixel, 0, kTileSize) / kBlockSize * kBlockSize;
+  };
+  const PixelBox whole = {first(box.x0 - x0), first(box.y0 - y0), end(box.x1 - x0),
+                          end(box.y1 - y0)};
+  return whole.empty() ? 0 : blocks_of(whole).mask;
+}
+
 /// A triangle that touches no more blocks than these is drawn without looking at its edges and its
 /// plane over the tile first.
 constexpr int kFewBlocks = 4;
@@ -193,8 +206,7 @@ DrawInTile::DrawInTile(const DrawSetup& setup, const FragmentSetup& fragments, T
       kernels_(pixels.kernels()),
       x0_(pixels.tile().x * kTileSize),
       y0_(pixels.tile().y * kTileSize),
-      whole_(setup.box.x0 <= x0_ && setup.box.y0 <= y0_ && setup.box.x1 >= x0_ + kTileSize &&
-             setup.box.y1 >= y0_ + kTileSize) {
+      inside_(blocks_inside(setup.box, x0_, y0_)) {
   if (fragments.uses_stencil) pixels_.add_counts();
   if (fragments.color)
     writer_.emplace(kernels_, *pixels.targets().color, pixels.tile(), setup.draw->state.color);
@@ -333,7 +345,7 @@ void DrawInTile::draw_any(const FaceSetup& face, const SetupTriangle& triangle,
       decide_blocks(face, depths, blocks, tested);
     blocks = marked(face, blocks, tested);
   }
-  if (face.counts && whole_) blocks = count_filled(face, blocks, filled, tested);
+  if (face.counts) blocks = count_filled(face, blocks, filled, tested);
   if (!blocks) return;
   std::array<PixelMask, kBlocksPerTile> covered;
   tested.blocks = cover_blocks(triangle, cover == Cover::in_32_bits ? &edges : nullptr, blocks,
@@ -409,7 +421,7 @@ void DrawInTile::note_depths(const TileDepth& plane, BlockMask blocks,
 BlockMask DrawInTile::count_filled(const FaceSetup& face, BlockMask blocks, BlockMask filled,
                                    const TestedBlocks& tested) {
   const BlockMask counted =
-      blocks & filled & (face.count_on_pass ? tested.depth_passes : tested.depth_fails);
+      blocks & filled & inside_ & (face.count_on_pass ? tested.depth_passes : tested.depth_fails);
   if (counted) pixels_.count(counted, face.delta);
   return blocks & ~counted;
 }
@@ -424,13 +436,11 @@ BlockMask DrawInTile::cover_blocks(const SetupTriangle& triangle, const TileEdge
     blocks =
         (blocks & filled) | (edges ? kernels_.cover_pixels(*edges, crossed, covered)
                                    : cover_pixels_in_64_bits(triangle, x0_, y0_, crossed, covered));
-  if (whole_) return blocks;
-  BlockMask touched = 0;
-  for_each_block_of(blocks, [&](std::size_t b) {
+  for_each_block_of(blocks & ~inside_, [&](std::size_t b) {
     covered[b] &= box_mask(setup_.box, x0_ + block_x(b), y0_ + block_y(b));
-    if (covered[b]) touched |= BlockMask{1} << b;
+    if (!covered[b]) blocks &= ~(BlockMask{1} << b);
   });
-  return touched;
+  return blocks;
 }
 
 void DrawInTile::color_blocks(const SetupTriangle& triangle, const TriangleSource& source,

@@ -94,8 +94,8 @@ class DrawInTile {
   const Kernels& kernels_;
   /// The tile's first pixel.
   const int x0_, y0_;
-  /// The draw's box lies around the whole tile.
-  const bool whole_;
+  /// The blocks that lie wholly inside the draw's box.
+  const BlockMask inside_;
   std::optional<BlockWriter> writer_;
   /// Blocks whose stencil lets a fragment of the front (back) through; computed when needed.
   std::optional<BlockMask> front_blocks_, back_blocks_;
