@@ -17,22 +17,18 @@ std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
                                                  std::span<const pipeline::PlacedObject> objects,
                                                  Method method, int threads,
                                                  pipeline::VolumeMemory* memory) {
-  const pipeline::Light& light = subject.scene.lights.at(0);
-  if (method == Method::automatic) {
-    const pipeline::Camera& camera = subject.camera;
-    return pipeline::make_volumes(
-        objects, light, {}, pipeline::near_region(camera.clip_from_world),
-        {.counts = pipeline::Counts::at_receivers,
-         .view = pipeline::View{camera.clip_from_world, camera.width, camera.height},
-         .threads = threads,
-         .memory = memory});
+  const pipeline::Camera& camera = subject.camera;
+  pipeline::VolumeOptions options{
+      .counts = pipeline::Counts::at_receivers,
+      .view = pipeline::View{camera.clip_from_world, camera.width, camera.height},
+      .threads = threads,
+      .memory = memory};
+  if (method != Method::automatic) {
+    options.method = method == Method::zpass ? VolumeMethod::zpass : VolumeMethod::zfail;
+    options.extrusion.kind = pipeline::Extrusion::Kind::infinite;
   }
-  return pipeline::make_volumes(
-      objects, light, {}, std::nullopt,
-      {.method = method == Method::zpass ? VolumeMethod::zpass : VolumeMethod::zfail,
-       .extrusion = {.kind = pipeline::Extrusion::Kind::infinite},
-       .threads = threads,
-       .memory = memory});
+  return pipeline::make_volumes(objects, subject.scene.lights.at(0), {},
+                                pipeline::near_region(camera.clip_from_world), options);
 }
 
 bool shows_one_side(const pipeline::PlacedObject& object) {

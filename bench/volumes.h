@@ -12,8 +12,9 @@
 
 namespace gnomon::bench {
 
-/// zpass and zfail: to infinity, for every caster; zpass without caps. auto: what the pipeline
-/// takes where only the picture counts (pipeline::Counts::at_receivers). `memory` may be null.
+/// zpass and zfail: to infinity, zpass without caps, whatever is best for a caster. auto: what the
+/// pipeline takes. All where only the picture counts (pipeline::Counts::at_receivers): the volumes
+/// have windows, which peers do not use. `memory` may be null.
 std::vector<pipeline::PlacedVolume> make_volumes(const Subject& subject,
                                                  std::span<const pipeline::PlacedObject> objects,
                                                  Method method, int threads,
