@@ -2,7 +2,7 @@
 // once and then serves every frame.
 #pragma once
 
-#include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -12,8 +12,9 @@
 
 namespace gnomon::pipeline {
 
-/// Radiance from all around a point, as a picture of directions: rows from the top (+y), longitude
-/// 0 is +z at column 0's left edge, growing towards +x (OpenEXR's latitude-longitude map).
+/// Radiance from all around a point, as a picture of directions: rows from the top (+y); longitude
+/// is pi at the left edge and falls to -pi at the right, where 0 is +z and pi/2 is +x (OpenEXR's
+/// latitude-longitude map).
 struct DirectionMap {
   int width = 0, height = 0;
   std::vector<glm::vec3> radiance;
@@ -37,7 +38,8 @@ struct LitScene {
   DirectionMap probe;
 };
 
-/// The reflectance at each vertex: its patches', weighted by area.
-std::vector<glm::vec3> vertex_reflectance(const LitScene& scene);
+/// What patches have at each vertex: its patches' values, weighted by area. `of_patches` is one a
+/// patch; a vertex of no patch gets 0.
+std::vector<glm::vec3> at_vertices(const PatchModel& model, std::span<const glm::vec3> of_patches);
 
 }  // namespace gnomon::pipeline

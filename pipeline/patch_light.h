@@ -1,5 +1,5 @@
-// Light from patch to point (Gibson 2003, section 5): form factors in closed form, and visibility by
-// rays through the patches themselves.
+// Light from patch to point (Gibson 2003, section 5): form factors in closed form, and visibility
+// by rays through the patches themselves.
 #pragma once
 
 #include <array>

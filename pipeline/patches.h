@@ -38,7 +38,7 @@ struct Patch {
 struct PatchModel {
   std::vector<PatchVertex> vertices;
   std::vector<Patch> patches;
-  /// Names of the objects that the patches come from.
+  /// What the patches come from: parts of objects, "OBJECT" or, of several, "OBJECT part N" from 0.
   std::vector<std::string> surfaces;
   /// No patch's edge is longer, in metres.
   double longest_edge_m = 0.0;

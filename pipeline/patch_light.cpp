@@ -1,0 +1,189 @@
+#include "pipeline/patch_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <embree3/rtcore.h>
+#include <glm/geometric.hpp>
+
+#include "raster/check.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+/// How far the ends of a ray are lifted off their surfaces, as a part of their coordinates' size.
+constexpr double kLift = 1e-5;
+
+double size_of(const glm::dvec3& p) {
+  return std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+/// Lambert's sum term of an edge seen from the origin.
+double edge_term(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& normal) {
+  const glm::dvec3 across = glm::cross(a, b);
+  const double length = glm::length(across);
+  // The edge runs through the point, or is none: its angle times its share of the normal is 0.
+  if (!(length > 0.0)) return 0.0;
+  return std::atan2(length, glm::dot(a, b)) * glm::dot(across, normal) / length;
+}
+
+RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, float far) {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(origin.x);
+  ray.org_y = static_cast<float>(origin.y);
+  ray.org_z = static_cast<float>(origin.z);
+  ray.dir_x = static_cast<float>(direction.x);
+  ray.dir_y = static_cast<float>(direction.y);
+  ray.dir_z = static_cast<float>(direction.z);
+  ray.tfar = far;
+  ray.mask = 0xffffffffu;
+  return ray;
+}
+
+/// The centroids of a triangle cut in `samples` = 4^k, as weights of its corners.
+std::vector<glm::dvec3> centroids(int samples) {
+  const int rows = samples == 1 ? 1 : samples == 4 ? 2 : 4;
+  std::vector<glm::dvec3> out;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < 2 * (rows - y) - 1; ++x) {
+      // Upright triangles at even x, those that stand on a corner between them.
+      const double third = x % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
+      const double u = (x / 2 + third) / rows, v = (y + third) / rows;
+      out.emplace_back(1.0 - u - v, u, v);
+    }
+  }
+  return out;
+}
+
+const std::vector<glm::dvec3>& samples_of(int samples) {
+  static const std::vector<glm::dvec3> one = centroids(1), four = centroids(4),
+                                       sixteen = centroids(16);
+  raster::require(samples == 1 || samples == 4 || samples == 16,
+                  "a patch has 1, 4 or 16 samples");
+  return samples == 1 ? one : samples == 4 ? four : sixteen;
+}
+
+}  // namespace
+
+double form_factor(const glm::dvec3& point, const glm::dvec3& normal,
+                   const std::array<glm::dvec3, 3>& triangle) {
+  const glm::dvec3 a = triangle[0] - point, b = triangle[1] - point, c = triangle[2] - point;
+  // Not before the triangle: its normal points away.
+  if (!(glm::dot(glm::cross(b - a, c - a), a) < 0.0)) return 0.0;
+  // The part above the horizon, four corners at most.
+  const std::array<glm::dvec3, 3> corners{a, b, c};
+  std::array<glm::dvec3, 4> above;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 &p = corners[k], &q = corners[(k + 1) % 3];
+    const double dp = glm::dot(p, normal), dq = glm::dot(q, normal);
+    if (dp >= 0.0) above[count++] = p;
+    if ((dp >= 0.0) != (dq >= 0.0)) above[count++] = p + (q - p) * (dp / (dp - dq));
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < count; ++k)
+    sum += edge_term(above[k], above[(k + 1) % count], normal);
+  // Counter-clockwise for the one who looks at it: the sum is negative.
+  return std::max(0.0, -sum / (2.0 * std::numbers::pi));
+}
+
+struct PatchVisibility::World {
+  const PatchModel& model;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  explicit World(const PatchModel& patches) : model(patches) {
+    device = rtcNewDevice(nullptr);
+    if (!device) throw std::runtime_error("Embree cannot start");
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* corners = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), model.vertices.size()));
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(std::uint32_t), model.patches.size()));
+    for (const PatchVertex& vertex : model.vertices) {
+      *corners++ = vertex.position.x;
+      *corners++ = vertex.position.y;
+      *corners++ = vertex.position.z;
+    }
+    for (const Patch& patch : model.patches)
+      indices = std::copy(patch.vertices.begin(), patch.vertices.end(), indices);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+  }
+  ~World() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+};
+
+PatchVisibility::PatchVisibility(const PatchModel& model)
+    : world_(std::make_unique<World>(model)) {}
+PatchVisibility::~PatchVisibility() = default;
+
+double PatchVisibility::visible_share(const Patch& patch, const glm::dvec3& point,
+                                      const glm::dvec3& normal, int samples) const {
+  const PatchModel& model = world_->model;
+  const glm::dvec3 a = model.corner(patch, 0), b = model.corner(patch, 1),
+                   c = model.corner(patch, 2);
+  const glm::dvec3 from = point + normal * (kLift * size_of(point));
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  int seen = 0, asked = 0;
+  for (const glm::dvec3& weights : samples_of(samples)) {
+    const glm::dvec3 at = a * weights.x + b * weights.y + c * weights.z;
+    const glm::dvec3 to = at + patch.normal * (kLift * size_of(at));
+    if (glm::dot(to - from, normal) <= 0.0) continue;
+    ++asked;
+    RTCRay ray = make_ray(from, to - from, 1.0f);
+    rtcOccluded1(world_->scene, &context, &ray);
+    seen += ray.tfar < 0.0f ? 0 : 1;
+  }
+  return asked == 0 ? 0.0 : static_cast<double>(seen) / asked;
+}
+
+PatchVisibility::Hit PatchVisibility::trace(const glm::dvec3& origin,
+                                            const glm::dvec3& direction) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query{};
+  query.ray = make_ray(origin, direction, std::numeric_limits<float>::infinity());
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(world_->scene, &context, &query);
+  Hit hit;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+  hit.patch = query.hit.primID;
+  hit.distance = query.ray.tfar;
+  const double u = query.hit.u, v = query.hit.v;
+  hit.weights = {1.0 - u - v, u, v};
+  hit.front = glm::dot(world_->model.patches[hit.patch].normal, direction) < 0.0;
+  return hit;
+}
+
+glm::dvec3 irradiance(const PatchModel& model, const std::vector<glm::vec3>& radiance,
+                      const PatchVisibility& visibility, const glm::dvec3& point,
+                      const glm::dvec3& normal, int samples) {
+  raster::require(radiance.size() == model.patches.size(), "a radiance belongs to each patch");
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < model.patches.size(); ++i) {
+    if (radiance[i] == glm::vec3(0.0f)) continue;
+    const Patch& patch = model.patches[i];
+    const double factor = form_factor(
+        point, normal, {model.corner(patch, 0), model.corner(patch, 1), model.corner(patch, 2)});
+    if (factor <= 0.0) continue;
+    sum += glm::dvec3(radiance[i]) *
+           (std::numbers::pi * factor * visibility.visible_share(patch, point, normal, samples));
+  }
+  return sum;
+}
+
+}  // namespace gnomon::pipeline
