@@ -13,8 +13,8 @@ bool in_first_set(std::uint64_t source, double first_share) {
 }
 
 void intensity_transfers(const ToneCurve& tone, const glm::dvec3& light,
-                         std::span<const glm::vec3> transfers, std::span<const bool> first_set,
-                         std::span<glm::vec3> values) {
+                         std::span<const glm::vec3> transfers,
+                         std::span<const std::uint8_t> first_set, std::span<glm::vec3> values) {
   raster::require(transfers.size() == values.size() && transfers.size() == first_set.size(),
                   "a source has a transfer, a set and a value");
   glm::dvec3 left[2] = {light, light};

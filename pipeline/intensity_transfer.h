@@ -21,10 +21,11 @@ bool in_first_set(std::uint64_t source, double first_share = 0.5);
 
 /// The values, in [0, 255] each and not rounded, that the sources of one vertex take, in the
 /// sources' order (falling transfer). `light` is the vertex's radiance, `transfers` what each
-/// source gives it; `first_set` says a source's set. Radiance below 0 counts as 0. No value is
-/// negative; those of a set add up to T(light) - T(light - sum of the set's transfers).
+/// source gives it; `first_set` is 1 for a source of the first set and 0 for one of the other.
+/// Radiance below 0 counts as 0. No value is negative; those of a set add up to T(light) - T(light
+/// - sum of the set's transfers).
 void intensity_transfers(const ToneCurve& tone, const glm::dvec3& light,
-                         std::span<const glm::vec3> transfers, std::span<const bool> first_set,
-                         std::span<glm::vec3> values);
+                         std::span<const glm::vec3> transfers,
+                         std::span<const std::uint8_t> first_set, std::span<glm::vec3> values);
 
 }  // namespace gnomon::pipeline

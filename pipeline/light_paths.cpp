@@ -64,8 +64,8 @@ class ShaftBuilder {
     light_.resize(paths.transfers.vertices);
     const auto root = paths.node_row(0);
     for (std::size_t v = 0; v < light_.size(); ++v)
-      light_[v] = options.prune_share * std::max(luminance(root[v]),
-                                                 luminance(paths.vertex_radiance[v]));
+      light_[v] =
+          options.prune_share * std::max(luminance(root[v]), luminance(paths.vertex_radiance[v]));
   }
 
   void build() {
@@ -75,9 +75,9 @@ class ShaftBuilder {
 
  private:
   ShaftNode link(std::uint32_t source, std::uint32_t receiver) const {
-    return {make_shaft(paths_.sources.nodes[source].bounds,
-                       paths_.receivers.nodes[receiver].bounds),
-            source, receiver, 0, 0};
+    return {
+        make_shaft(paths_.sources.nodes[source].bounds, paths_.receivers.nodes[receiver].bounds),
+        source, receiver, 0, 0};
   }
 
   bool matters(std::uint32_t source, std::uint32_t receiver) const {
@@ -250,8 +250,7 @@ std::vector<SourceCluster> choose_sources(const LightPaths& paths, const Occlude
     for (const std::uint32_t child : children) open.push(child);
   }
   for (; !open.empty(); open.pop()) done.push_back(open.top());
-  std::sort(done.begin(), done.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return less(b, a); });
+  std::sort(done.begin(), done.end(), [&](std::uint32_t a, std::uint32_t b) { return less(b, a); });
   std::vector<SourceCluster> clusters;
   for (const std::uint32_t node : done) {
     const std::uint32_t leaf = brightest_of(paths, occluded, node);

@@ -60,8 +60,7 @@ std::vector<glm::dvec3> centroids(int samples) {
 const std::vector<glm::dvec3>& samples_of(int samples) {
   static const std::vector<glm::dvec3> one = centroids(1), four = centroids(4),
                                        sixteen = centroids(16);
-  raster::require(samples == 1 || samples == 4 || samples == 16,
-                  "a patch has 1, 4 or 16 samples");
+  raster::require(samples == 1 || samples == 4 || samples == 16, "a patch has 1, 4 or 16 samples");
   return samples == 1 ? one : samples == 4 ? four : sixteen;
 }
 

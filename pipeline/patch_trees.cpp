@@ -68,9 +68,8 @@ class ReceiverTreeBuilder {
       return (p.x > middle.x ? 1u : 0u) | (p.y > middle.y ? 2u : 0u) | (p.z > middle.z ? 4u : 0u);
     };
     const auto begin = tree_.order.begin() + first;
-    std::stable_sort(begin, begin + count, [&](std::uint32_t a, std::uint32_t b) {
-      return octant(a) < octant(b);
-    });
+    std::stable_sort(begin, begin + count,
+                     [&](std::uint32_t a, std::uint32_t b) { return octant(a) < octant(b); });
     std::size_t child = 0;
     for (std::uint32_t at = first; at < first + count;) {
       const std::uint32_t which = octant(tree_.order[at]);

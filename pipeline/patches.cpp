@@ -34,7 +34,8 @@ std::vector<Surface> surfaces_of(const Scene& scene) {
     const glm::dmat4 world(object.world_from_model);
     const std::vector<Part>& parts = object.model->parts;
     for (std::size_t p = 0; p < parts.size(); ++p) {
-      Surface surface{parts.size() == 1 ? object.name : object.name + " part " + std::to_string(p), {}};
+      Surface surface{parts.size() == 1 ? object.name : object.name + " part " + std::to_string(p),
+                      {}};
       const Mesh& mesh = parts[p].mesh;
       for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         Corners corners;
@@ -146,14 +147,15 @@ class Builder {
   }
 
  private:
-  using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, long, long, long, std::size_t>;
+  using Key =
+      std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, long, long, long, std::size_t>;
 
   std::uint32_t vertex(const glm::vec3& position, const glm::vec3& normal) {
     // Normals of one plane's triangles differ by their rounding.
     const auto part = [](float x) { return std::lround(x * 1e4f); };
     const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0f); };
-    const Key key{bits(position.x),  bits(position.y),  bits(position.z),      part(normal.x),
-                  part(normal.y), part(normal.z), model_.surfaces.size()};
+    const Key key{bits(position.x), bits(position.y), bits(position.z),      part(normal.x),
+                  part(normal.y),   part(normal.z),   model_.surfaces.size()};
     const auto [at, is_new] =
         known_.try_emplace(key, static_cast<std::uint32_t>(model_.vertices.size()));
     if (is_new) model_.vertices.push_back({position, normal});

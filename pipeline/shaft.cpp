@@ -11,8 +11,8 @@ namespace {
 /// Of a coordinate's size: what rounding can move a plane by, many times over.
 constexpr double kSlack = 1e-12;
 
-/// Adds the planes along the third axis that join a corner of each rectangle (u, v of the boxes) and
-/// have both on one side: two, where the rectangles are not one in the other.
+/// Adds the planes along the third axis that join a corner of each rectangle (u, v of the boxes)
+/// and have both on one side: two, where the rectangles are not one in the other.
 void add_planes(const Bounds& a, const Bounds& b, int u, int v, Shaft& shaft) {
   for (const bool u_high : {false, true}) {
     for (const bool v_high : {false, true}) {

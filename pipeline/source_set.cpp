@@ -51,9 +51,8 @@ Transfers compute_transfers(const LitScene& scene, const TransferOptions& option
                 {model.corner(patch, 0), model.corner(patch, 1), model.corner(patch, 2)});
             if (factor <= 0.0) continue;
             const double seen = visibility.visible_share(patch, point, normal, options.samples);
-            transfers.radiance[s * transfers.vertices + v] =
-                glm::vec3(glm::dvec3(reflectance[v]) * glm::dvec3(scene.radiance[source]) *
-                          (factor * seen));
+            transfers.radiance[s * transfers.vertices + v] = glm::vec3(
+                glm::dvec3(reflectance[v]) * glm::dvec3(scene.radiance[source]) * (factor * seen));
           }
         }
       });

@@ -16,9 +16,7 @@
 namespace gnomon::pipeline {
 
 /// The weight of a colour where one number is needed: Rec. 709 luminance.
-inline double luminance(const glm::dvec3& c) {
-  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
+inline double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 /// The brightest patches, sorted by falling luminance of radiance (then by number), that together
 /// give `power_share` of the power (radiance times area) of all; at least one where any patch has

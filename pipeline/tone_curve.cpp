@@ -12,8 +12,9 @@ double ToneCurve::value(std::size_t channel, double radiance) const {
   if (!(radiance > static_cast<double>(table.front()))) return 0.0;
   if (radiance >= static_cast<double>(table.back())) return 255.0;
   // The first value that is brighter; not the first of all.
-  const auto above = std::upper_bound(table.begin(), table.end(), radiance,
-                                      [](double at, float entry) { return at < static_cast<double>(entry); });
+  const auto above =
+      std::upper_bound(table.begin(), table.end(), radiance,
+                       [](double at, float entry) { return at < static_cast<double>(entry); });
   const double low = above[-1], high = above[0];
   return static_cast<double>(above - table.begin() - 1) + (radiance - low) / (high - low);
 }
@@ -35,7 +36,8 @@ ToneCurve ToneCurve::from_gamma(double gamma, double white) {
   raster::require(white > 0.0 && std::isfinite(white), "white is a positive radiance");
   ToneCurve curve;
   for (std::size_t v = 0; v < 256; ++v) {
-    const auto radiance = static_cast<float>(white * std::pow(static_cast<double>(v) / 255.0, gamma));
+    const auto radiance =
+        static_cast<float>(white * std::pow(static_cast<double>(v) / 255.0, gamma));
     for (auto& table : curve.radiance_from_value) table[v] = radiance;
   }
   return curve;

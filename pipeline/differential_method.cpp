@@ -1,0 +1,335 @@
+#include "pipeline/differential_method.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "pipeline/casters.h"
+#include "pipeline/intensity_transfer.h"
+#include "pipeline/near_clip.h"
+#include "raster/check.h"
+#include "raster/executor.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+std::array<glm::dvec3, 8> corners_of(const PlacedObject& object) {
+  const Topology& topology = *object.topology;
+  const glm::dmat4 world(object.object->world_from_model);
+  std::array<glm::dvec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const glm::dvec3 p(i & 1 ? topology.high.x : topology.low.x,
+                       i & 2 ? topology.high.y : topology.low.y,
+                       i & 4 ? topology.high.z : topology.low.z);
+    corners[i] = glm::dvec3(world * glm::dvec4(p, 1.0));
+  }
+  return corners;
+}
+
+raster::State drawn_again() {
+  raster::State state = surface_state();
+  state.depth = raster::DepthState{.func = raster::CompareFunc::equal, .write = false};
+  state.color.write = {true, true, true, false};
+  state.color.blend = raster::Blend{.color_op = raster::BlendOp::reverse_subtract,
+                                    .src_color = raster::BlendFactor::one,
+                                    .dst_color = raster::BlendFactor::one};
+  return state;
+}
+
+/// The part of the target that triangles can cover.
+raster::Rect window_of(std::span<const glm::vec4> positions, std::span<const std::uint32_t> indices,
+                       const Camera& camera) {
+  const raster::Rect all{0, 0, camera.width, camera.height};
+  glm::dvec2 low(2.0), high(-2.0);
+  for (const std::uint32_t i : indices) {
+    const glm::dvec4 clip = glm::dmat4(camera.clip_from_world) * glm::dvec4(positions[i]);
+    if (!(clip.w > 1e-3)) return all;
+    low = glm::min(low, glm::dvec2(clip) / clip.w);
+    high = glm::max(high, glm::dvec2(clip) / clip.w);
+  }
+  const auto pixel = [](double ndc, int size, double pad) {
+    return static_cast<int>(
+        std::clamp((ndc + 1.0) * 0.5 * size + pad, 0.0, static_cast<double>(size)));
+  };
+  const int x0 = pixel(low.x, camera.width, -1.0), x1 = pixel(high.x, camera.width, 2.0);
+  const int y0 = pixel(low.y, camera.height, -1.0), y1 = pixel(high.y, camera.height, 2.0);
+  return {x0, y0, std::max(x1 - x0, 0), std::max(y1 - y0, 0)};
+}
+
+std::string numbered(const char* label, std::size_t number) {
+  return label + std::to_string(number);
+}
+
+}  // namespace
+
+DifferentialMethod::DifferentialMethod(const LitScene& scene, const LightPaths& paths)
+    : scene_(scene), paths_(paths), visibility_(scene.model), object_light_(scene, visibility_) {
+  for (const PatchVertex& vertex : scene.model.vertices)
+    model_positions_.emplace_back(vertex.position, 1.0f);
+  for (const Patch& patch : scene.model.patches)
+    model_indices_.insert(model_indices_.end(), patch.vertices.begin(), patch.vertices.end());
+}
+
+raster::Frame DifferentialMethod::record(const Scene& virtual_scene, const Camera& camera,
+                                         const raster::ImageView& photograph,
+                                         const raster::Targets& targets,
+                                         const DifferentialOptions& options) {
+  raster::require(targets.color && targets.depth, "a differential shadow needs colour and depth");
+  raster::require(options.mask == ShadowMask::map || targets.stencil,
+                  "shadow volumes need a stencil buffer");
+  const ShadowPrecision precision = options.take.precision;
+  const bool bytes =
+      precision == ShadowPrecision::bytes || precision == ShadowPrecision::dithered;
+  raster::require(bytes == (targets.color->format() == raster::ColorFormat::rgba8),
+                  "bytes go to RGBA8, values and radiance to RGBA32F");
+  placed_ = place_objects(virtual_scene, camera, topologies_);
+  std::vector<glm::dvec3> corners;
+  std::vector<Bounds> boxes;
+  for (const PlacedObject& object : placed_) {
+    if (!object.object->casts || object.topology->triangle_count() == 0) continue;
+    Bounds& box = boxes.emplace_back();
+    for (const glm::dvec3& p : corners_of(object)) {
+      corners.push_back(p);
+      box.add(p);
+    }
+  }
+  occluded_.find(paths_, boxes);
+  find_shadows(scene_, paths_, occluded_, corners, options.take, shadows_);
+  const ObjectRadiance radiance =
+      object_light_.radiance(placed_, camera.eye_world, options.take.threads);
+  color_objects(radiance, options);
+  take_from_objects(radiance, options);
+
+  raster::Frame frame;
+  record_surfaces(frame, camera, photograph, targets, options);
+  std::vector<std::optional<raster::DepthLookup>> maps(shadows_.shadows.size());
+  for (std::size_t j = 0; j < maps.size() && options.mask == ShadowMask::map; ++j)
+    maps[j] = record_map(frame, j, virtual_scene, options.map_size);
+  for (std::size_t j = 0; j < maps.size(); ++j) {
+    if (!maps[j]) count(frame, j, camera, targets, options);
+    subtract(frame, j, camera, targets, maps[j]);
+  }
+  return frame;
+}
+
+void DifferentialMethod::record_surfaces(raster::Frame& frame, const Camera& camera,
+                                         const raster::ImageView& photograph,
+                                         const raster::Targets& targets,
+                                         const DifferentialOptions& options) {
+  frame.begin_pass(differential_label::kBackground, targets);
+  raster::Clear clear{.color = glm::vec4(0.0f), .depth = 1.0f};
+  if (targets.stencil) clear.stencil = 0;
+  frame.clear(clear);
+  if (options.take.precision != ShadowPrecision::radiance) frame.blit({.image = photograph});
+  frame.begin_pass(differential_label::kModel, targets);
+  raster::State state = surface_state();
+  state.depth = raster::DepthState{};
+  state.color = raster::ColorState::off();
+  frame.draw({.state = state,
+              .mesh = {model_positions_, model_indices_},
+              .clip_from_model = camera.clip_from_world,
+              .label = "scene model"});
+  frame.begin_pass(differential_label::kObjects, targets);
+  state.color = {};
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    state.front_face = placed_[i].front_face;
+    for (std::size_t p = 0; p < placed_[i].meshes.size(); ++p) {
+      const auto& mesh = placed_[i].meshes[p];
+      frame.keep(mesh);
+      frame.draw({.state = state,
+                  .mesh = {mesh->positions, mesh->indices, {}, drawn_[i][p], {}},
+                  .clip_from_model = placed_[i].clip_from_model,
+                  .label = placed_[i].object->name});
+    }
+  }
+}
+
+raster::DepthLookup DifferentialMethod::record_map(raster::Frame& frame, std::size_t number,
+                                                   const Scene& virtual_scene, int size) {
+  const SourceShadow& shadow = shadows_.shadows[number];
+  const MapPlan plan{.light = shadow.light,
+                     .clip_from_world = shadow.view.clip_from_world(shadow.casters, shadow.near_m,
+                                                                    shadow.far_m),
+                     .size = size};
+  raster::DepthLookup lookup = record_shadow_map(
+      frame, placed_, Casters(virtual_scene), "source " + std::to_string(number), plan,
+      raster::Filter::nearest, maps_.map(number, size, raster::DepthFormat::d24));
+  // One where something lies before the point, 0 where the light comes through.
+  lookup.func = raster::CompareFunc::greater;
+  return lookup;
+}
+
+void DifferentialMethod::count(raster::Frame& frame, std::size_t number, const Camera& camera,
+                               const raster::Targets& targets,
+                               const DifferentialOptions& options) {
+  const SourceShadow& shadow = shadows_.shadows[number];
+  frame.begin_pass(numbered(differential_label::kVolumes, number), targets);
+  const raster::Rect window =
+      options.self_shadows ? raster::Rect{0, 0, camera.width, camera.height}
+                           : window_of(shadows_.positions, shadow.indices, camera);
+  if (window.width == 0 || window.height == 0) return;
+  frame.clear({.stencil = 0, .scissor = window});
+  const Light light{.position = shadow.light};
+  std::vector<PlacedVolume> volumes =
+      make_volumes(placed_, light, {}, near_region(camera.clip_from_world),
+                   {.extrusion = {.kind = Extrusion::Kind::infinite},
+                    .threads = options.take.threads,
+                    .memory = &volumes_});
+  for (PlacedVolume& volume : volumes) volume.window = window;
+  count_volumes(frame, volumes, {.casters_drawn = true});
+}
+
+void DifferentialMethod::subtract(raster::Frame& frame, std::size_t number, const Camera& camera,
+                                  const raster::Targets& targets,
+                                  const std::optional<raster::DepthLookup>& map) {
+  const SourceShadow& shadow = shadows_.shadows[number];
+  frame.begin_pass(numbered(differential_label::kSubtract, number), targets);
+  raster::State state = drawn_again();
+  if (!map)
+    state.stencil = raster::StencilState::both({.func = raster::CompareFunc::not_equal});
+  if (!shadow.indices.empty()) {
+    frame.draw({.state = state,
+                .mesh = {shadows_.positions, shadow.indices, {}, shadow.colors, {}},
+                .clip_from_model = camera.clip_from_world,
+                .shading = raster::Flat{.depth_lookup = map},
+                .label = "receivers"});
+  }
+  for (std::size_t i = 0; i < placed_.size() && !taken_.empty(); ++i) {
+    if (!placed_[i].object->receives) continue;
+    std::optional<raster::DepthLookup> lookup = map;
+    if (lookup) lookup->map_from_position *= placed_[i].object->world_from_model;
+    state.front_face = placed_[i].front_face;
+    for (std::size_t p = 0; p < placed_[i].meshes.size(); ++p) {
+      const Mesh& mesh = *placed_[i].meshes[p];
+      frame.draw({.state = state,
+                  .mesh = {mesh.positions, mesh.indices, {}, taken_[number][i][p], {}},
+                  .clip_from_model = placed_[i].clip_from_model,
+                  .shading = raster::Flat{.depth_lookup = lookup},
+                  .label = placed_[i].object->name});
+    }
+  }
+}
+
+void DifferentialMethod::color_objects(const ObjectRadiance& radiance,
+                                       const DifferentialOptions& options) {
+  drawn_.resize(placed_.size());
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    auto value = radiance[i].begin();
+    drawn_[i].resize(placed_[i].meshes.size());
+    for (std::size_t p = 0; p < placed_[i].meshes.size(); ++p) {
+      const std::size_t count = placed_[i].meshes[p]->positions.size();
+      drawn_[i][p].resize(count);
+      for (glm::vec4& color : drawn_[i][p]) {
+        const glm::vec3 light = *value++;
+        color = options.take.precision == ShadowPrecision::radiance
+                    ? glm::vec4(light, 1.0f)
+                    : glm::vec4(glm::vec3(scene_.tone.value(glm::dvec3(light)) / 255.0), 1.0f);
+      }
+    }
+  }
+}
+
+/// A cluster counts as a point here, as if all its light came from there: near enough for a vertex
+/// that is far from it, and a thousand times less work than all its patches.
+void DifferentialMethod::take_from_objects(const ObjectRadiance& radiance,
+                                           const DifferentialOptions& options) {
+  taken_.clear();
+  if (!options.self_shadows) return;
+  const std::size_t count = shadows_.shadows.size();
+  std::vector<std::uint8_t> first_set(count);
+  for (std::size_t j = 0; j < count; ++j)
+    first_set[j] = in_first_set(shadows_.shadows[j].cluster.brightest, options.take.first_share);
+  taken_.resize(count);
+  for (ObjectColors& colors : taken_) {
+    colors = drawn_;
+  }
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const Object& object = *placed_[i].object;
+    std::vector<float> seen(count);
+    const glm::dvec3 middle = glm::dvec3(
+        object.world_from_model *
+        glm::vec4(glm::vec3((placed_[i].topology->low + placed_[i].topology->high) * 0.5), 1.0f));
+    for (std::size_t j = 0; j < count; ++j) {
+      const Patch& patch =
+          scene_.model.patches[paths_.transfers.sources[shadows_.shadows[j].cluster.brightest]];
+      seen[j] = static_cast<float>(visibility_.visible_share(
+          patch, middle, glm::normalize(patch.center - middle), 4));
+    }
+    std::size_t first_vertex = 0;
+    for (std::size_t p = 0; p < placed_[i].meshes.size(); ++p) {
+      const Mesh& mesh = *placed_[i].meshes[p];
+      const glm::dvec3 diffuse(linear_color(object.model->parts[p].material.diffuse));
+      raster::for_each_chunk(mesh.positions.size(), 64, options.take.threads, [&](std::size_t first,
+                                                                                   std::size_t last) {
+        std::vector<glm::vec3> transfers(count), values(count);
+        for (std::size_t v = first; v < last; ++v) {
+          const glm::dvec3 at(object.world_from_model * mesh.positions[v]);
+          const glm::dvec3 normal =
+              glm::normalize(glm::dvec3(placed_[i].world_from_model_normal * mesh.normals[v]));
+          for (std::size_t j = 0; j < count; ++j) {
+            const SourceShadow& shadow = shadows_.shadows[j];
+            const Patch& patch =
+                scene_.model.patches[paths_.transfers.sources[shadow.cluster.brightest]];
+            const glm::dvec3 to = patch.center - at;
+            const double square = glm::dot(to, to);
+            const double cosines =
+                std::max(0.0, glm::dot(to, normal)) * std::max(0.0, -glm::dot(to, patch.normal));
+            const double factor = cosines / (square * square * std::numbers::pi);
+            transfers[j] = glm::vec3(diffuse * glm::dvec3(shadow.intensity) *
+                                     (factor * static_cast<double>(seen[j])));
+          }
+          if (options.take.precision == ShadowPrecision::radiance) {
+            values = transfers;
+          } else {
+            intensity_transfers(scene_.tone, glm::dvec3(radiance[i][first_vertex + v]), transfers,
+                                first_set, values);
+            for (glm::vec3& value : values) value /= 255.0f;
+          }
+          for (std::size_t j = 0; j < count; ++j)
+            taken_[j][i][p][v] = glm::vec4(values[j], 0.0f);
+        }
+      });
+      first_vertex += mesh.positions.size();
+    }
+  }
+}
+
+std::vector<std::uint8_t> map_radiance(const raster::ImageView& photograph,
+                                       const raster::ColorBuffer& light, const ToneCurve& tone,
+                                       int threads) {
+  raster::require(light.width() == photograph.width && light.height() == photograph.height,
+                  "light and photograph have one size");
+  const raster::TiledPlane<glm::vec4>& plane = light.rgba32f();
+  const auto width = static_cast<std::size_t>(light.width());
+  std::vector<std::uint8_t> rows(4 * width * static_cast<std::size_t>(light.height()));
+  raster::for_each_chunk(
+      static_cast<std::size_t>(light.height()), 16, threads,
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t y = first; y < last; ++y) {
+          for (std::size_t x = 0; x < width; ++x) {
+            const glm::vec4 at = plane.at(static_cast<int>(x), static_cast<int>(y));
+            const std::uint8_t* photo =
+                photograph.pixel(static_cast<int>(x), static_cast<int>(y));
+            std::uint8_t* out = &rows[4 * (y * width + x)];
+            for (std::size_t c = 0; c < 3; ++c) {
+              const double part = static_cast<double>(at[static_cast<int>(c)]);
+              if (at.w == 0.0f && part == 0.0) {
+                out[c] = photo[c];
+                continue;
+              }
+              const double radiance = at.w == 0.0f ? tone.radiance(c, photo[c]) + part : part;
+              out[c] = static_cast<std::uint8_t>(std::lround(tone.value(c, radiance)));
+            }
+            out[3] = at.w == 0.0f ? 0 : 255;
+          }
+        }
+      });
+  return rows;
+}
+
+}  // namespace gnomon::pipeline

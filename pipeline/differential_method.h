@@ -1,0 +1,114 @@
+// Soft shadows of virtual objects on a photograph: for each source of real light that they hide a
+// hard shadow, whose share of the light is subtracted from the picture (Gibson 2003, section 7;
+// differential rendering after Debevec 1998).
+// Invariant: a pixel changes only where a virtual object is visible or where a receiver's visible
+// point lies in some source's shadow.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "pipeline/count_volumes.h"
+#include "pipeline/differential_shadows.h"
+#include "pipeline/light_paths.h"
+#include "pipeline/lit_scene.h"
+#include "pipeline/object_light.h"
+#include "pipeline/patch_light.h"
+#include "pipeline/scene.h"
+#include "pipeline/shadow_map.h"
+#include "raster/frame.h"
+
+namespace gnomon::pipeline {
+
+/// How a source's shadow is found.
+enum class ShadowMask : std::uint8_t {
+  /// A depth map of the casters, looked up with one comparison (the paper).
+  map,
+  /// The casters' shadow volume, counted in the stencil buffer: no texel, no offset.
+  volumes
+};
+
+struct DifferentialOptions {
+  ShadowTakeOptions take;
+  ShadowMask mask = ShadowMask::map;
+  int map_size = 256;
+  /// Shadows of virtual objects on virtual objects.
+  bool self_shadows = true;
+};
+
+namespace differential_label {
+inline constexpr const char* kBackground = "background image";
+inline constexpr const char* kModel = "scene model into the depth buffer";
+inline constexpr const char* kObjects = "synthetic objects";
+inline constexpr const char* kMap = "shadow map: source ";
+inline constexpr const char* kVolumes = "shadow volumes: source ";
+inline constexpr const char* kSubtract = "subtract source ";
+}  // namespace differential_label
+
+/// Keeps what does not change between frames, and memory of what does. Refers to scene and paths.
+class DifferentialMethod {
+ public:
+  DifferentialMethod(const LitScene& scene, const LightPaths& paths);
+  ObjectLight& object_light() { return object_light_; }
+
+  /// Records one frame. Objects of `virtual_scene` are virtual; its lights are not used.
+  /// Targets have the photograph's size: colour (RGBA8 for bytes and dithered, RGBA32F otherwise),
+  /// depth, and stencil for volumes. After execution colour is
+  /// - bytes, dithered, values: the augmented photograph, values over 255;
+  /// - radiance: of a virtual object its radiance, elsewhere what shadows take (0 or less);
+  /// alpha is 1 where a virtual object is visible and 0 elsewhere.
+  /// The frame borrows from this object: it is good until the next one is recorded.
+  /// Precondition: photograph and targets outlive the execution.
+  raster::Frame record(const Scene& virtual_scene, const Camera& camera,
+                       const raster::ImageView& photograph, const raster::Targets& targets,
+                       const DifferentialOptions& options);
+
+  /// Of the last frame.
+  const DifferentialShadows& shadows() const { return shadows_; }
+
+ private:
+  /// One an object, part and vertex.
+  using ObjectColors = std::vector<std::vector<std::vector<glm::vec4>>>;
+
+  void record_surfaces(raster::Frame& frame, const Camera& camera,
+                       const raster::ImageView& photograph, const raster::Targets& targets,
+                       const DifferentialOptions& options);
+  raster::DepthLookup record_map(raster::Frame& frame, std::size_t number,
+                                 const Scene& virtual_scene, int size);
+  void count(raster::Frame& frame, std::size_t number, const Camera& camera,
+             const raster::Targets& targets, const DifferentialOptions& options);
+  void subtract(raster::Frame& frame, std::size_t number, const Camera& camera,
+                const raster::Targets& targets, const std::optional<raster::DepthLookup>& map);
+  void color_objects(const ObjectRadiance& radiance, const DifferentialOptions& options);
+  void take_from_objects(const ObjectRadiance& radiance, const DifferentialOptions& options);
+
+  const LitScene& scene_;
+  const LightPaths& paths_;
+  PatchVisibility visibility_;
+  ObjectLight object_light_;
+  std::vector<glm::vec4> model_positions_;
+  std::vector<std::uint32_t> model_indices_;
+  OccludedLight occluded_;
+  DifferentialShadows shadows_;
+  TopologyCache topologies_;
+  MapMemory maps_;
+  VolumeMemory volumes_;
+  std::vector<PlacedObject> placed_;
+  ObjectColors drawn_;
+  /// One a shadow.
+  std::vector<ObjectColors> taken_;
+};
+
+/// The picture of ShadowPrecision::radiance: T of an object's radiance, T of the photograph's
+/// radiance plus what was taken (both at least 0), rounded to nearest; a pixel without either keeps
+/// its bytes. Rows r, g, b, a from the bottom row, a as in `light`.
+/// Precondition: `light` is RGBA32F and of the photograph's size.
+std::vector<std::uint8_t> map_radiance(const raster::ImageView& photograph,
+                                       const raster::ColorBuffer& light, const ToneCurve& tone,
+                                       int threads = 0);
+
+}  // namespace gnomon::pipeline

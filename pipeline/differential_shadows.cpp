@@ -1,0 +1,225 @@
+#include "pipeline/differential_shadows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "pipeline/intensity_transfer.h"
+#include "pipeline/map_plan.h"
+#include "raster/executor.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+/// How much wider than the casters a view is: texels on its edge stay empty.
+constexpr double kMargin = 0.02;
+
+struct Cast {
+  LightView view;
+  Rectangle casters;
+  double near_m, far_m;
+};
+
+/// The view from a patch to the casters; absent if one map cannot have it.
+std::optional<Cast> cast_from(const glm::dvec3& light, std::span<const glm::dvec3> corners) {
+  glm::dvec3 middle(0.0);
+  for (const glm::dvec3& p : corners) middle += p / static_cast<double>(corners.size());
+  const Light point{.position = glm::vec4(glm::vec3(light), 1.0f)};
+  if (!(glm::length(middle - light) > 0.0)) return std::nullopt;
+  Cast cast{LightView::towards(point, middle), {}, 0.0, 0.0};
+  for (const glm::dvec3& p : corners) {
+    const glm::dvec3 local = cast.view.local(p);
+    if (!(local.z > 0.0)) return std::nullopt;
+    const glm::dvec2 place = cast.view.place(local);
+    if (std::max(std::abs(place.x), std::abs(place.y)) > kWidestMap) return std::nullopt;
+    cast.casters.add(place);
+    cast.near_m = cast.near_m == 0.0 ? local.z : std::min(cast.near_m, local.z);
+    cast.far_m = std::max(cast.far_m, local.z);
+  }
+  const glm::dvec2 margin = cast.casters.extent() * kMargin;
+  cast.casters.low -= margin;
+  cast.casters.high += margin;
+  const double depth = cast.far_m - cast.near_m;
+  cast.near_m = std::max(cast.near_m * 0.5, cast.near_m - 0.05 * depth);
+  cast.far_m += 0.05 * depth;
+  if (cast.casters.empty() || !(cast.near_m < cast.far_m)) return std::nullopt;
+  return cast;
+}
+
+/// The occluded rows below a node.
+void take_rows(const LightPaths& paths, const OccludedLight& occluded, std::uint32_t node,
+               std::vector<std::uint32_t>& rows) {
+  const PatchNode& at = paths.sources.nodes[node];
+  if (at.leaf()) {
+    rows.push_back(paths.sources.order[at.first]);
+    return;
+  }
+  for (const std::uint32_t child : at.children) {
+    if (child != PatchNode::kNone && occluded.affects(child))
+      take_rows(paths, occluded, child, rows);
+  }
+}
+
+/// The receivers' own numbering of their vertices.
+struct Receivers {
+  /// Numbers in the model, ascending.
+  std::vector<std::uint32_t> vertices;
+  /// Three a patch.
+  std::vector<std::uint32_t> indices;
+};
+
+Receivers number_receivers(const PatchModel& model, std::span<const std::uint32_t> patches) {
+  constexpr std::uint32_t kUnused = 0xffffffff;
+  std::vector<std::uint32_t> local(model.vertices.size(), kUnused);
+  Receivers receivers;
+  for (const std::uint32_t patch : patches) {
+    for (const std::uint32_t v : model.patches[patch].vertices) local[v] = 0;
+  }
+  for (std::uint32_t v = 0; v < local.size(); ++v) {
+    if (local[v] == kUnused) continue;
+    local[v] = static_cast<std::uint32_t>(receivers.vertices.size());
+    receivers.vertices.push_back(v);
+  }
+  receivers.indices.reserve(3 * patches.size());
+  for (const std::uint32_t patch : patches) {
+    for (const std::uint32_t v : model.patches[patch].vertices)
+      receivers.indices.push_back(local[v]);
+  }
+  return receivers;
+}
+
+/// Fills what one shadow's sources give each of the receivers' vertices.
+class Takes {
+ public:
+  Takes(const LitScene& scene, const LightPaths& paths, const Receivers& receivers,
+        const OccludedLight& occluded, const ShadowTakeOptions& options,
+        std::vector<SourceShadow>& shadows)
+      : scene_(scene), paths_(paths), receivers_(receivers), options_(options), shadows_(shadows) {
+    for (SourceShadow& shadow : shadows) {
+      std::vector<std::uint32_t>& rows = rows_.emplace_back();
+      if (options.whole_clusters) {
+        const auto items = paths.sources.items(paths.sources.nodes[shadow.cluster.node]);
+        rows.assign(items.begin(), items.end());
+      } else {
+        take_rows(paths, occluded, shadow.cluster.node, rows);
+      }
+      glm::dvec3 intensity(0.0);
+      for (const std::uint32_t row : rows) {
+        const std::uint32_t patch = paths.transfers.sources[row];
+        intensity += glm::dvec3(scene.radiance[patch]) * scene.model.patches[patch].area_m2;
+      }
+      shadow.intensity = glm::vec3(intensity);
+      shadow.colors.resize(receivers.vertices.size());
+      first_set_.push_back(in_first_set(shadow.cluster.brightest, options.first_share) ? 1 : 0);
+    }
+  }
+
+  void run() {
+    constexpr std::size_t kChunk = 32;
+    raster::for_each_chunk(receivers_.vertices.size(), kChunk, options_.threads,
+                           [&](std::size_t first, std::size_t last) { fill(first, last); });
+  }
+
+ private:
+  void fill(std::size_t first, std::size_t last) {
+    std::vector<glm::vec3> transfers(shadows_.size()), values(shadows_.size());
+    for (std::size_t i = first; i < last; ++i) {
+      const std::uint32_t vertex = receivers_.vertices[i];
+      for (std::size_t j = 0; j < shadows_.size(); ++j) transfers[j] = given(j, vertex);
+      if (options_.precision != ShadowPrecision::radiance) {
+        intensity_transfers(scene_.tone, paths_.vertex_radiance[vertex], transfers, first_set_,
+                            values);
+        for (std::size_t j = 0; j < shadows_.size(); ++j)
+          shadows_[j].colors[i] = rounded(values[j], j);
+      } else {
+        for (std::size_t j = 0; j < shadows_.size(); ++j)
+          shadows_[j].colors[i] = glm::vec4(transfers[j], 0.0f);
+      }
+    }
+  }
+
+  glm::vec3 given(std::size_t j, std::uint32_t vertex) const {
+    if (options_.whole_clusters) return paths_.node_row(shadows_[j].cluster.node)[vertex];
+    glm::vec3 sum(0.0f);
+    for (const std::uint32_t row : rows_[j]) sum += paths_.transfers.row(row)[vertex];
+    return sum;
+  }
+
+  glm::vec4 rounded(const glm::vec3& value, std::size_t j) const {
+    if (options_.precision != ShadowPrecision::dithered) return {value / 255.0f, 0.0f};
+    // The golden ratio's multiples are even over [0, 1) however many there are.
+    const double turn = static_cast<double>(j + 1) * 0.6180339887498949;
+    const auto offset = static_cast<float>(turn - std::floor(turn) - 0.5);
+    // Where nothing is taken, nothing is rounded.
+    const auto part = [&](float v) { return v > 0.0f ? std::max(v + offset, 0.0f) / 255.0f : 0.0f; };
+    return {part(value.x), part(value.y), part(value.z), 0.0f};
+  }
+
+  const LitScene& scene_;
+  const LightPaths& paths_;
+  const Receivers& receivers_;
+  const ShadowTakeOptions& options_;
+  std::vector<SourceShadow>& shadows_;
+  std::vector<std::vector<std::uint32_t>> rows_;
+  std::vector<std::uint8_t> first_set_;
+};
+
+/// Keeps the triangles that the pyramid behind the casters' nearest point can touch, of those that
+/// something is taken from.
+void keep_reached(const Receivers& receivers, std::span<const glm::vec4> positions,
+                  SourceShadow& shadow) {
+  std::vector<std::uint8_t> outside(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const glm::dvec3 p = shadow.view.local(glm::dvec3(positions[i]));
+    const auto bit = [](bool out, int place) { return static_cast<unsigned>(out ? 1 << place : 0); };
+    outside[i] = static_cast<std::uint8_t>(
+        bit(p.x < shadow.casters.low.x * p.z, 0) | bit(p.x > shadow.casters.high.x * p.z, 1) |
+        bit(p.y < shadow.casters.low.y * p.z, 2) | bit(p.y > shadow.casters.high.y * p.z, 3) |
+        bit(p.z < shadow.near_m, 4) | bit(shadow.colors[i] == glm::vec4(0.0f), 5));
+  }
+  shadow.indices.clear();
+  for (std::size_t t = 0; t < receivers.indices.size(); t += 3) {
+    const std::uint32_t* i = &receivers.indices[t];
+    if ((outside[i[0]] & outside[i[1]] & outside[i[2]]) == 0)
+      shadow.indices.insert(shadow.indices.end(), i, i + 3);
+  }
+}
+
+}  // namespace
+
+void find_shadows(const LitScene& scene, const LightPaths& paths, const OccludedLight& occluded,
+                  std::span<const glm::dvec3> caster_corners, const ShadowTakeOptions& options,
+                  DifferentialShadows& result) {
+  const std::vector<SourceCluster> clusters = choose_sources(paths, occluded, options.passes);
+  result.occluded_sources = occluded.sources().size();
+  result.receivers = occluded.receivers().size();
+  result.left_out = 0;
+  result.shadows.clear();
+  for (const SourceCluster& cluster : clusters) {
+    const Patch& patch = scene.model.patches[paths.transfers.sources[cluster.brightest]];
+    const std::optional<Cast> cast = cast_from(patch.center, caster_corners);
+    if (!cast) {
+      ++result.left_out;
+      continue;
+    }
+    result.shadows.push_back({.cluster = cluster,
+                              .light = glm::vec4(glm::vec3(patch.center), 1.0f),
+                              .view = cast->view,
+                              .casters = cast->casters,
+                              .near_m = cast->near_m,
+                              .far_m = cast->far_m});
+  }
+  const Receivers receivers = number_receivers(scene.model, occluded.receivers());
+  result.positions.clear();
+  for (const std::uint32_t v : receivers.vertices)
+    result.positions.emplace_back(scene.model.vertices[v].position, 1.0f);
+  Takes(scene, paths, receivers, occluded, options, result.shadows).run();
+  raster::for_each_chunk(result.shadows.size(), 1, options.threads,
+                         [&](std::size_t first, std::size_t last) {
+                           for (std::size_t j = first; j < last; ++j)
+                             keep_reached(receivers, result.positions, result.shadows[j]);
+                         });
+}
+
+}  // namespace gnomon::pipeline

@@ -1,0 +1,80 @@
+// What each shadow of a frame takes away, and from where: for each chosen source the point that its
+// shadow is cast from, the receivers' triangles that the shadow can fall on, and at their vertices
+// what is subtracted (Gibson 2003, sections 7.1.1 and 8).
+// Invariant: the same for every number of threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "pipeline/light_paths.h"
+#include "pipeline/light_view.h"
+
+namespace gnomon::pipeline {
+
+/// What is subtracted, and how it is rounded.
+enum class ShadowPrecision : std::uint8_t {
+  /// Values of the 8-bit picture, each source's rounded when it is subtracted (the paper).
+  bytes,
+  /// The same with an offset a source in place of rounding to nearest, evenly spread over [0, 1):
+  /// of many faint shadows as much is kept, on average, as they have together.
+  dithered,
+  /// Values in floats, rounded once at the end.
+  values,
+  /// Radiance in floats, mapped to values at the end: the limit of the model.
+  radiance
+};
+
+struct ShadowTakeOptions {
+  /// Sources that shadows are made for, at most.
+  std::size_t passes = 50;
+  ShadowPrecision precision = ShadowPrecision::bytes;
+  /// A cluster's shadow takes the light of all its sources, as in the paper, and not only of those
+  /// that may be hidden.
+  bool whole_clusters = false;
+  /// As in_first_set.
+  double first_share = 0.5;
+  int threads = 0;
+};
+
+/// One shadow of a frame.
+struct SourceShadow {
+  SourceCluster cluster;
+  /// Where it is cast from, in the world; w = 1.
+  glm::vec4 light{0.0f, 0.0f, 0.0f, 1.0f};
+  /// The view from there with the casters in the rectangle, at distances from near_m to far_m.
+  LightView view;
+  Rectangle casters;
+  double near_m = 0.0, far_m = 0.0;
+  /// Light of the cluster's sources as one at its point: radiance times area (W / sr).
+  glm::vec3 intensity{0.0f};
+  /// Of DifferentialShadows::positions: triangles that the shadow can reach.
+  std::vector<std::uint32_t> indices;
+  /// One a position: what is subtracted, values over 255 or radiance; w is 0.
+  std::vector<glm::vec4> colors;
+};
+
+struct DifferentialShadows {
+  /// The receivers' vertices.
+  std::vector<glm::vec4> positions;
+  /// By falling mean transfer.
+  std::vector<SourceShadow> shadows;
+  /// Rows whose light may be hidden, receivers, and clusters that no shadow can be cast from:
+  /// a caster is around their point or too wide for one view.
+  std::size_t occluded_sources = 0, receivers = 0, left_out = 0;
+};
+
+/// For casters with these corners (eight of a box each, in the world). Memory of an earlier frame's
+/// result is used again.
+void find_shadows(const LitScene& scene, const LightPaths& paths, const OccludedLight& occluded,
+                  std::span<const glm::dvec3> caster_corners, const ShadowTakeOptions& options,
+                  DifferentialShadows& result);
+
+}  // namespace gnomon::pipeline
