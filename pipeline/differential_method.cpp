@@ -83,8 +83,7 @@ raster::Frame DifferentialMethod::record(const Scene& virtual_scene, const Camer
   raster::require(options.mask == ShadowMask::map || targets.stencil,
                   "shadow volumes need a stencil buffer");
   const ShadowPrecision precision = options.take.precision;
-  const bool bytes =
-      precision == ShadowPrecision::bytes || precision == ShadowPrecision::dithered;
+  const bool bytes = precision == ShadowPrecision::bytes || precision == ShadowPrecision::dithered;
   raster::require(bytes == (targets.color->format() == raster::ColorFormat::rgba8),
                   "bytes go to RGBA8, values and radiance to RGBA32F");
   placed_ = place_objects(virtual_scene, camera, topologies_);
@@ -152,10 +151,10 @@ void DifferentialMethod::record_surfaces(raster::Frame& frame, const Camera& cam
 raster::DepthLookup DifferentialMethod::record_map(raster::Frame& frame, std::size_t number,
                                                    const Scene& virtual_scene, int size) {
   const SourceShadow& shadow = shadows_.shadows[number];
-  const MapPlan plan{.light = shadow.light,
-                     .clip_from_world = shadow.view.clip_from_world(shadow.casters, shadow.near_m,
-                                                                    shadow.far_m),
-                     .size = size};
+  const MapPlan plan{
+      .light = shadow.light,
+      .clip_from_world = shadow.view.clip_from_world(shadow.casters, shadow.near_m, shadow.far_m),
+      .size = size};
   raster::DepthLookup lookup = record_shadow_map(
       frame, placed_, Casters(virtual_scene), "source " + std::to_string(number), plan,
       raster::Filter::nearest, maps_.map(number, size, raster::DepthFormat::d24));
@@ -165,13 +164,12 @@ raster::DepthLookup DifferentialMethod::record_map(raster::Frame& frame, std::si
 }
 
 void DifferentialMethod::count(raster::Frame& frame, std::size_t number, const Camera& camera,
-                               const raster::Targets& targets,
-                               const DifferentialOptions& options) {
+                               const raster::Targets& targets, const DifferentialOptions& options) {
   const SourceShadow& shadow = shadows_.shadows[number];
   frame.begin_pass(numbered(differential_label::kVolumes, number), targets);
-  const raster::Rect window =
-      options.self_shadows ? raster::Rect{0, 0, camera.width, camera.height}
-                           : window_of(shadows_.positions, shadow.indices, camera);
+  const raster::Rect window = options.self_shadows
+                                  ? raster::Rect{0, 0, camera.width, camera.height}
+                                  : window_of(shadows_.positions, shadow.indices, camera);
   if (window.width == 0 || window.height == 0) return;
   frame.clear({.stencil = 0, .scissor = window});
   const Light light{.position = shadow.light};
@@ -190,8 +188,7 @@ void DifferentialMethod::subtract(raster::Frame& frame, std::size_t number, cons
   const SourceShadow& shadow = shadows_.shadows[number];
   frame.begin_pass(numbered(differential_label::kSubtract, number), targets);
   raster::State state = drawn_again();
-  if (!map)
-    state.stencil = raster::StencilState::both({.func = raster::CompareFunc::not_equal});
+  if (!map) state.stencil = raster::StencilState::both({.func = raster::CompareFunc::not_equal});
   if (!shadow.indices.empty()) {
     frame.draw({.state = state,
                 .mesh = {shadows_.positions, shadow.indices, {}, shadow.colors, {}},
@@ -257,43 +254,44 @@ void DifferentialMethod::take_from_objects(const ObjectRadiance& radiance,
     for (std::size_t j = 0; j < count; ++j) {
       const Patch& patch =
           scene_.model.patches[paths_.transfers.sources[shadows_.shadows[j].cluster.brightest]];
-      seen[j] = static_cast<float>(visibility_.visible_share(
-          patch, middle, glm::normalize(patch.center - middle), 4));
+      seen[j] = static_cast<float>(
+          visibility_.visible_share(patch, middle, glm::normalize(patch.center - middle), 4));
     }
     std::size_t first_vertex = 0;
     for (std::size_t p = 0; p < placed_[i].meshes.size(); ++p) {
       const Mesh& mesh = *placed_[i].meshes[p];
       const glm::dvec3 diffuse(linear_color(object.model->parts[p].material.diffuse));
-      raster::for_each_chunk(mesh.positions.size(), 64, options.take.threads, [&](std::size_t first,
-                                                                                   std::size_t last) {
-        std::vector<glm::vec3> transfers(count), values(count);
-        for (std::size_t v = first; v < last; ++v) {
-          const glm::dvec3 at(object.world_from_model * mesh.positions[v]);
-          const glm::dvec3 normal =
-              glm::normalize(glm::dvec3(placed_[i].world_from_model_normal * mesh.normals[v]));
-          for (std::size_t j = 0; j < count; ++j) {
-            const SourceShadow& shadow = shadows_.shadows[j];
-            const Patch& patch =
-                scene_.model.patches[paths_.transfers.sources[shadow.cluster.brightest]];
-            const glm::dvec3 to = patch.center - at;
-            const double square = glm::dot(to, to);
-            const double cosines =
-                std::max(0.0, glm::dot(to, normal)) * std::max(0.0, -glm::dot(to, patch.normal));
-            const double factor = cosines / (square * square * std::numbers::pi);
-            transfers[j] = glm::vec3(diffuse * glm::dvec3(shadow.intensity) *
-                                     (factor * static_cast<double>(seen[j])));
-          }
-          if (options.take.precision == ShadowPrecision::radiance) {
-            values = transfers;
-          } else {
-            intensity_transfers(scene_.tone, glm::dvec3(radiance[i][first_vertex + v]), transfers,
-                                first_set, values);
-            for (glm::vec3& value : values) value /= 255.0f;
-          }
-          for (std::size_t j = 0; j < count; ++j)
-            taken_[j][i][p][v] = glm::vec4(values[j], 0.0f);
-        }
-      });
+      raster::for_each_chunk(
+          mesh.positions.size(), 64, options.take.threads,
+          [&](std::size_t first, std::size_t last) {
+            std::vector<glm::vec3> transfers(count), values(count);
+            for (std::size_t v = first; v < last; ++v) {
+              const glm::dvec3 at(object.world_from_model * mesh.positions[v]);
+              const glm::dvec3 normal =
+                  glm::normalize(glm::dvec3(placed_[i].world_from_model_normal * mesh.normals[v]));
+              for (std::size_t j = 0; j < count; ++j) {
+                const SourceShadow& shadow = shadows_.shadows[j];
+                const Patch& patch =
+                    scene_.model.patches[paths_.transfers.sources[shadow.cluster.brightest]];
+                const glm::dvec3 to = patch.center - at;
+                const double square = glm::dot(to, to);
+                const double cosines = std::max(0.0, glm::dot(to, normal)) *
+                                       std::max(0.0, -glm::dot(to, patch.normal));
+                const double factor = cosines / (square * square * std::numbers::pi);
+                transfers[j] = glm::vec3(diffuse * glm::dvec3(shadow.intensity) *
+                                         (factor * static_cast<double>(seen[j])));
+              }
+              if (options.take.precision == ShadowPrecision::radiance) {
+                values = transfers;
+              } else {
+                intensity_transfers(scene_.tone, glm::dvec3(radiance[i][first_vertex + v]),
+                                    transfers, first_set, values);
+                for (glm::vec3& value : values) value /= 255.0f;
+              }
+              for (std::size_t j = 0; j < count; ++j)
+                taken_[j][i][p][v] = glm::vec4(values[j], 0.0f);
+            }
+          });
       first_vertex += mesh.positions.size();
     }
   }
@@ -313,8 +311,7 @@ std::vector<std::uint8_t> map_radiance(const raster::ImageView& photograph,
         for (std::size_t y = first; y < last; ++y) {
           for (std::size_t x = 0; x < width; ++x) {
             const glm::vec4 at = plane.at(static_cast<int>(x), static_cast<int>(y));
-            const std::uint8_t* photo =
-                photograph.pixel(static_cast<int>(x), static_cast<int>(y));
+            const std::uint8_t* photo = photograph.pixel(static_cast<int>(x), static_cast<int>(y));
             std::uint8_t* out = &rows[4 * (y * width + x)];
             for (std::size_t c = 0; c < 3; ++c) {
               const double part = static_cast<double>(at[static_cast<int>(c)]);

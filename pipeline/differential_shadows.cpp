@@ -111,6 +111,7 @@ class Takes {
       }
       shadow.intensity = glm::vec3(intensity);
       shadow.colors.resize(receivers.vertices.size());
+      shadow.given.resize(receivers.vertices.size());
       first_set_.push_back(in_first_set(shadow.cluster.brightest, options.first_share) ? 1 : 0);
     }
   }
@@ -126,7 +127,10 @@ class Takes {
     std::vector<glm::vec3> transfers(shadows_.size()), values(shadows_.size());
     for (std::size_t i = first; i < last; ++i) {
       const std::uint32_t vertex = receivers_.vertices[i];
-      for (std::size_t j = 0; j < shadows_.size(); ++j) transfers[j] = given(j, vertex);
+      for (std::size_t j = 0; j < shadows_.size(); ++j) {
+        transfers[j] = given(j, vertex);
+        shadows_[j].given[i] = transfers[j] == glm::vec3(0.0f) ? 0 : 1;
+      }
       if (options_.precision != ShadowPrecision::radiance) {
         intensity_transfers(scene_.tone, paths_.vertex_radiance[vertex], transfers, first_set_,
                             values);
@@ -151,9 +155,8 @@ class Takes {
     // The golden ratio's multiples are even over [0, 1) however many there are.
     const double turn = static_cast<double>(j + 1) * 0.6180339887498949;
     const auto offset = static_cast<float>(turn - std::floor(turn) - 0.5);
-    // Where nothing is taken, nothing is rounded.
-    const auto part = [&](float v) { return v > 0.0f ? std::max(v + offset, 0.0f) / 255.0f : 0.0f; };
-    return {part(value.x), part(value.y), part(value.z), 0.0f};
+    // Also at a vertex that nothing is taken from: values are interpolated, and then rounded.
+    return {(value + offset) / 255.0f, 0.0f};
   }
 
   const LitScene& scene_;
@@ -172,11 +175,13 @@ void keep_reached(const Receivers& receivers, std::span<const glm::vec4> positio
   std::vector<std::uint8_t> outside(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const glm::dvec3 p = shadow.view.local(glm::dvec3(positions[i]));
-    const auto bit = [](bool out, int place) { return static_cast<unsigned>(out ? 1 << place : 0); };
+    const auto bit = [](bool out, int place) {
+      return static_cast<unsigned>(out ? 1 << place : 0);
+    };
     outside[i] = static_cast<std::uint8_t>(
         bit(p.x < shadow.casters.low.x * p.z, 0) | bit(p.x > shadow.casters.high.x * p.z, 1) |
         bit(p.y < shadow.casters.low.y * p.z, 2) | bit(p.y > shadow.casters.high.y * p.z, 3) |
-        bit(p.z < shadow.near_m, 4) | bit(shadow.colors[i] == glm::vec4(0.0f), 5));
+        bit(p.z < shadow.near_m, 4) | bit(shadow.given[i] == 0, 5));
   }
   shadow.indices.clear();
   for (std::size_t t = 0; t < receivers.indices.size(); t += 3) {

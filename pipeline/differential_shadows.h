@@ -57,8 +57,11 @@ struct SourceShadow {
   glm::vec3 intensity{0.0f};
   /// Of DifferentialShadows::positions: triangles that the shadow can reach.
   std::vector<std::uint32_t> indices;
-  /// One a position: what is subtracted, values over 255 or radiance; w is 0.
+  /// One a position: what is subtracted, values over 255 (with a dither's offset, so perhaps below
+  /// 0) or radiance; w is 0.
   std::vector<glm::vec4> colors;
+  /// One a position: 1 where its light is more than nothing.
+  std::vector<std::uint8_t> given;
 };
 
 struct DifferentialShadows {

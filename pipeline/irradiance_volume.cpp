@@ -17,8 +17,8 @@ constexpr double kPi = std::numbers::pi;
 void add_triangle(const std::array<glm::dvec3, 3>& t, const glm::dvec3& radiance, int depth,
                   Harmonics& sum) {
   const glm::dvec3 middle = (t[0] + t[1] + t[2]) / 3.0;
-  const double edge = std::max({glm::length(t[1] - t[0]), glm::length(t[2] - t[1]),
-                                glm::length(t[0] - t[2])});
+  const double edge =
+      std::max({glm::length(t[1] - t[0]), glm::length(t[2] - t[1]), glm::length(t[0] - t[2])});
   const double distance = glm::length(middle);
   if (depth > 0 && distance < 2.0 * edge) {
     const glm::dvec3 ab = (t[0] + t[1]) * 0.5, bc = (t[1] + t[2]) * 0.5, ca = (t[2] + t[0]) * 0.5;
@@ -93,7 +93,8 @@ glm::dvec3 irradiance(const Harmonics& radiance, const glm::dvec3& normal) {
 double solid_angle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
   const double volume = std::abs(glm::dot(a, glm::cross(b, c)));
-  const double base = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+  const double base =
+      la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
   return 2.0 * std::atan2(volume, base);
 }
 
@@ -104,8 +105,8 @@ IrradianceVolume::IrradianceVolume(const LitScene& scene, const PatchVisibility&
   std::size_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = std::ceil(extent[axis] / options.spacing_m);
-    size_[static_cast<std::size_t>(axis)] = static_cast<std::size_t>(
-        std::clamp(cells, 1.0, static_cast<double>(options.longest)));
+    size_[static_cast<std::size_t>(axis)] =
+        static_cast<std::size_t>(std::clamp(cells, 1.0, static_cast<double>(options.longest)));
     count *= size_[static_cast<std::size_t>(axis)];
   }
   radiance_.resize(count);

@@ -42,8 +42,8 @@ class IrradianceVolume {
   IrradianceVolume(const LitScene& scene, const PatchVisibility& visibility,
                    const IrradianceVolumeOptions& options = {});
 
-  /// Between the grid's eight points, those inside walls and furniture left out; outside the grid as
-  /// on its edge. `normal` has unit length.
+  /// Between the grid's eight points, those inside walls and furniture left out; outside the grid
+  /// as on its edge. `normal` has unit length.
   glm::dvec3 irradiance(const glm::dvec3& point, const glm::dvec3& normal) const;
 
   std::size_t points() const { return radiance_.size(); }

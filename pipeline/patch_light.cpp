@@ -57,14 +57,18 @@ std::vector<glm::dvec3> centroids(int samples) {
   return out;
 }
 
-const std::vector<glm::dvec3>& samples_of(int samples) {
+}  // namespace
+
+glm::dvec3 lifted(const glm::dvec3& point, const glm::dvec3& normal) {
+  return point + normal * (kLift * size_of(point));
+}
+
+std::span<const glm::dvec3> patch_samples(int samples) {
   static const std::vector<glm::dvec3> one = centroids(1), four = centroids(4),
                                        sixteen = centroids(16);
   raster::require(samples == 1 || samples == 4 || samples == 16, "a patch has 1, 4 or 16 samples");
   return samples == 1 ? one : samples == 4 ? four : sixteen;
 }
-
-}  // namespace
 
 double form_factor(const glm::dvec3& point, const glm::dvec3& normal,
                    const std::array<glm::dvec3, 3>& triangle) {
@@ -129,25 +133,21 @@ PatchVisibility::PatchVisibility(const PatchModel& model)
     : world_(std::make_unique<World>(model)) {}
 PatchVisibility::~PatchVisibility() = default;
 
-double PatchVisibility::visible_share(const Patch& patch, const glm::dvec3& point,
-                                      const glm::dvec3& normal, int samples) const {
-  const PatchModel& model = world_->model;
-  const glm::dvec3 a = model.corner(patch, 0), b = model.corner(patch, 1),
-                   c = model.corner(patch, 2);
-  const glm::dvec3 from = point + normal * (kLift * size_of(point));
+const PatchModel& PatchVisibility::model() const { return world_->model; }
+
+bool PatchVisibility::sees(const glm::dvec3& from, const glm::dvec3& to) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  int seen = 0, asked = 0;
-  for (const glm::dvec3& weights : samples_of(samples)) {
-    const glm::dvec3 at = a * weights.x + b * weights.y + c * weights.z;
-    const glm::dvec3 to = at + patch.normal * (kLift * size_of(at));
-    if (glm::dot(to - from, normal) <= 0.0) continue;
-    ++asked;
-    RTCRay ray = make_ray(from, to - from, 1.0f);
-    rtcOccluded1(world_->scene, &context, &ray);
-    seen += ray.tfar < 0.0f ? 0 : 1;
-  }
-  return asked == 0 ? 0.0 : static_cast<double>(seen) / asked;
+  RTCRay ray = make_ray(from, to - from, 1.0f);
+  rtcOccluded1(world_->scene, &context, &ray);
+  return !(ray.tfar < 0.0f);
+}
+
+double PatchVisibility::visible_share(const Patch& patch, const glm::dvec3& point,
+                                      const glm::dvec3& normal, int samples) const {
+  return share_of_samples(
+      patch, point, normal, samples,
+      [this](const glm::dvec3& from, const glm::dvec3& to) { return sees(from, to); });
 }
 
 PatchVisibility::Hit PatchVisibility::trace(const glm::dvec3& origin,

@@ -5,8 +5,10 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "pipeline/patches.h"
@@ -20,6 +22,12 @@ namespace gnomon::pipeline {
 double form_factor(const glm::dvec3& point, const glm::dvec3& normal,
                    const std::array<glm::dvec3, 3>& triangle);
 
+/// A surface's point, so far off it that a ray from there does not meet it.
+glm::dvec3 lifted(const glm::dvec3& point, const glm::dvec3& normal);
+
+/// Centroids of a triangle cut in 1, 4 or 16, as weights of its corners. Misuse: another number.
+std::span<const glm::dvec3> patch_samples(int samples);
+
 /// Asks what stands between patches and points. Safe for use by several threads at once.
 class PatchVisibility {
  public:
@@ -29,11 +37,30 @@ class PatchVisibility {
   PatchVisibility(const PatchVisibility&) = delete;
   PatchVisibility& operator=(const PatchVisibility&) = delete;
 
-  static constexpr int kMostSamples = 16;
   /// The share of `samples` (1, 4 or 16: centroids of the triangle cut in so many) points of the
-  /// patch that nothing hides from `point`, which lies on a surface with this normal.
+  /// patch that nothing hides from `point`, which lies on a surface with this normal; of those
+  /// above its horizon, 0 if none is.
   double visible_share(const Patch& patch, const glm::dvec3& point, const glm::dvec3& normal,
                        int samples) const;
+  /// The same with a question of one's own: counts(from, to), the two ends lifted off their
+  /// surfaces.
+  template <class Counts>
+  double share_of_samples(const Patch& patch, const glm::dvec3& point, const glm::dvec3& normal,
+                          int samples, const Counts& counts) const {
+    const PatchModel& of = model();
+    const glm::dvec3 a = of.corner(patch, 0), b = of.corner(patch, 1), c = of.corner(patch, 2);
+    const glm::dvec3 from = lifted(point, normal);
+    int counted = 0, asked = 0;
+    for (const glm::dvec3& weights : patch_samples(samples)) {
+      const glm::dvec3 to = lifted(a * weights.x + b * weights.y + c * weights.z, patch.normal);
+      if (glm::dot(to - from, normal) <= 0.0) continue;
+      ++asked;
+      counted += counts(from, to) ? 1 : 0;
+    }
+    return asked == 0 ? 0.0 : static_cast<double>(counted) / asked;
+  }
+  /// No patch lies between two points.
+  bool sees(const glm::dvec3& from, const glm::dvec3& to) const;
   /// The nearest patch along a ray, seen from either side; kNone where there is none.
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   struct Hit {
@@ -48,6 +75,8 @@ class PatchVisibility {
   Hit trace(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
  private:
+  const PatchModel& model() const;
+
   struct World;
   std::unique_ptr<World> world_;
 };

@@ -1,0 +1,182 @@
+#include "pipeline/differential_reference.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+#include "pipeline/bounds.h"
+#include "pipeline/object_light.h"
+#include "pipeline/patch_light.h"
+#include "raster/check.h"
+#include "raster/executor.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+struct Sphere {
+  glm::dvec3 center{0.0};
+  double radius = 0.0;
+};
+
+Sphere sphere_of(const Bounds& box) {
+  return {box.center(), 0.5 * glm::length(box.high - box.low)};
+}
+
+Bounds bounds_of(const Object& object) {
+  Bounds box;
+  for (const Part& part : object.model->parts) {
+    for (const glm::vec4& p : part.mesh.positions)
+      box.add(glm::dvec3(glm::dmat4(object.world_from_model) * glm::dvec4(p)));
+  }
+  return box;
+}
+
+/// False only if no segment from the point to the patch's sphere meets the other sphere.
+bool may_hide(const glm::dvec3& point, const Sphere& patch, const Sphere& object) {
+  const glm::dvec3 axis = patch.center - point;
+  const double square = glm::dot(axis, axis);
+  if (!(square > 0.0)) return true;
+  const double t = std::clamp(glm::dot(object.center - point, axis) / square, 0.0, 1.0);
+  // At the part t of the way the cone is t times as wide as the patch.
+  const double reach = object.radius + patch.radius;
+  const glm::dvec3 apart = object.center - (point + axis * t);
+  return glm::dot(apart, apart) <= reach * reach;
+}
+
+}  // namespace
+
+struct DifferentialReference::World {
+  const LitScene& scene;
+  PatchVisibility patches;
+  RayReference objects;
+  std::vector<glm::vec3> reflectance;
+  std::vector<Sphere> patch_spheres, casters;
+  /// One an object: its first part's.
+  std::vector<glm::dvec3> diffuse;
+
+  World(const LitScene& lit, const Scene& virtual_scene)
+      : scene(lit),
+        patches(lit.model),
+        objects(virtual_scene),
+        reflectance(at_vertices(lit.model, lit.reflectance)) {
+    for (const Patch& patch : lit.model.patches) {
+      Sphere sphere{patch.center, 0.0};
+      for (std::size_t k = 0; k < 3; ++k)
+        sphere.radius =
+            std::max(sphere.radius, glm::length(lit.model.corner(patch, k) - patch.center));
+      patch_spheres.push_back(sphere);
+    }
+    for (const Object& object : virtual_scene.objects) {
+      if (object.casts) casters.push_back(sphere_of(bounds_of(object)));
+      diffuse.emplace_back(linear_color(object.model->parts.at(0).material.diffuse));
+    }
+  }
+
+  std::array<glm::dvec3, 3> corners(const Patch& patch) const {
+    return {scene.model.corner(patch, 0), scene.model.corner(patch, 1),
+            scene.model.corner(patch, 2)};
+  }
+
+  /// What virtual objects take from a receiver's point, as irradiance over pi.
+  glm::dvec3 hidden(const glm::dvec3& point, const glm::dvec3& normal, int samples) const {
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < patch_spheres.size(); ++i) {
+      if (scene.radiance[i] == glm::vec3(0.0f)) continue;
+      if (std::none_of(casters.begin(), casters.end(), [&](const Sphere& caster) {
+            return may_hide(point, patch_spheres[i], caster);
+          }))
+        continue;
+      const Patch& patch = scene.model.patches[i];
+      const double factor = form_factor(point, normal, corners(patch));
+      if (factor <= 0.0) continue;
+      const double share = hidden_share(patch, point, normal, samples);
+      sum += glm::dvec3(scene.radiance[i]) * (factor * share);
+    }
+    return sum;
+  }
+
+  /// The share of the patch's points that only virtual objects hide.
+  double hidden_share(const Patch& patch, const glm::dvec3& point, const glm::dvec3& normal,
+                      int samples) const {
+    return patches.share_of_samples(patch, point, normal, samples,
+                                    [&](const glm::dvec3& from, const glm::dvec3& to) {
+                                      return objects.blocked(from, glm::vec4(glm::vec3(to), 1.0f)) &&
+                                             patches.sees(from, to);
+                                    });
+  }
+
+  /// Irradiance over pi on a virtual object, of all that nothing hides.
+  glm::dvec3 arriving(const glm::dvec3& point, const glm::dvec3& normal, int samples) const {
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < patch_spheres.size(); ++i) {
+      if (scene.radiance[i] == glm::vec3(0.0f)) continue;
+      const Patch& patch = scene.model.patches[i];
+      const double factor = form_factor(point, normal, corners(patch));
+      if (factor <= 0.0) continue;
+      const double share = patches.share_of_samples(
+          patch, point, normal, samples, [&](const glm::dvec3& from, const glm::dvec3& to) {
+            return !objects.blocked(from, glm::vec4(glm::vec3(to), 1.0f)) && patches.sees(from, to);
+          });
+      sum += glm::dvec3(scene.radiance[i]) * (factor * share);
+    }
+    return sum;
+  }
+};
+
+DifferentialReference::DifferentialReference(const LitScene& scene, const Scene& virtual_scene)
+    : world_(std::make_unique<World>(scene, virtual_scene)) {}
+DifferentialReference::~DifferentialReference() = default;
+
+ReferencePicture DifferentialReference::render(std::span<const Ray> rays,
+                                               std::span<const std::uint8_t> photograph,
+                                               const ReferenceOptions& options) const {
+  raster::require(photograph.size() == 3 * rays.size(), "a ray has three bytes of a photograph");
+  ReferencePicture picture{{photograph.begin(), photograph.end()}, {}, {}};
+  picture.object.resize(rays.size());
+  picture.shadow.resize(rays.size());
+  const World& world = *world_;
+  const ToneCurve& tone = world.scene.tone;
+  const auto set = [&](std::size_t i, const glm::dvec3& radiance) {
+    for (std::size_t c = 0; c < 3; ++c)
+      picture.pixels[3 * i + c] =
+          static_cast<std::uint8_t>(std::lround(tone.value(c, radiance[static_cast<int>(c)])));
+  };
+  const auto trace = [&](std::size_t i) {
+    const Ray& ray = rays[i];
+    const PatchVisibility::Hit patch_hit = world.patches.trace(ray.origin, ray.direction);
+    const RayHit object_hit = world.objects.trace(ray);
+    if (object_hit.hit && !(patch_hit.patch != PatchVisibility::kNone &&
+                            patch_hit.distance < object_hit.distance)) {
+      picture.object[i] = 1;
+      set(i, world.diffuse[object_hit.object] *
+                 world.arriving(object_hit.point, object_hit.normal, options.object_samples));
+      return;
+    }
+    if (patch_hit.patch == PatchVisibility::kNone || !patch_hit.front) return;
+    const Patch& patch = world.scene.model.patches[patch_hit.patch];
+    glm::dvec3 point(0.0), reflectance(0.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double weight = patch_hit.weights[static_cast<int>(k)];
+      point += world.scene.model.corner(patch, k) * weight;
+      reflectance += glm::dvec3(world.reflectance[patch.vertices[k]]) * weight;
+    }
+    const glm::dvec3 taken = reflectance * world.hidden(point, patch.normal, options.samples);
+    if (taken == glm::dvec3(0.0)) return;
+    picture.shadow[i] = 1;
+    glm::dvec3 light(0.0);
+    for (std::size_t c = 0; c < 3; ++c)
+      light[static_cast<int>(c)] = tone.radiance(c, photograph[3 * i + c]);
+    set(i, glm::max(light - taken, glm::dvec3(0.0)));
+  };
+  raster::for_each_chunk(rays.size(), 64, options.threads,
+                         [&](std::size_t first, std::size_t last) {
+                           for (std::size_t i = first; i < last; ++i) trace(i);
+                         });
+  return picture;
+}
+
+}  // namespace gnomon::pipeline

@@ -1,0 +1,252 @@
+#include "pipeline/differential_method.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/differential_reference.h"
+#include "raster/execute.h"
+#include "raster/isa.h"
+#include "tests/pipeline/lit_room.h"
+#include "tests/pipeline/test_meshes.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+
+struct Picture {
+  raster::ColorBuffer color;
+  raster::DepthBuffer depth{kWidth, kHeight};
+  raster::StencilBuffer stencil{kWidth, kHeight};
+  explicit Picture(raster::ColorFormat format = raster::ColorFormat::rgba8)
+      : color(kWidth, kHeight, format) {}
+  raster::Targets targets() { return {&color, &depth, &stencil}; }
+};
+
+/// A room, a camera in it, and as its photograph what the reference makes of no object at all: each
+/// point's own radiance.
+struct Setting {
+  LitScene scene;
+  LightPaths paths;
+  Camera camera = test::look({0.6f, 1.2f, 1.8f}, {0.1f, 0.2f, -0.4f}, kWidth, kHeight, 60.0f);
+  std::vector<std::uint8_t> rows;
+
+  explicit Setting(const test::RoomOptions& options = {.patches = 600},
+                   const LightPathOptions& light = {.transfer = {.power_share = 1.0}})
+      : scene(test::lit_room(options)) {
+    std::vector<std::uint32_t> all(scene.model.patches.size());
+    std::iota(all.begin(), all.end(), 0u);
+    paths = find_light_paths(scene, all, light);
+    const PatchVisibility visibility(scene.model);
+    for (const Ray& ray : pixel_rays(camera)) {
+      const auto hit = visibility.trace(ray.origin, ray.direction);
+      glm::dvec3 radiance(0.0);
+      for (std::size_t k = 0; k < 3; ++k) {
+        radiance += glm::dvec3(
+                        paths.vertex_radiance[scene.model.patches[hit.patch].vertices[k]]) *
+                    hit.weights[static_cast<int>(k)];
+      }
+      for (std::size_t c = 0; c < 3; ++c)
+        rows.push_back(static_cast<std::uint8_t>(
+            std::lround(scene.tone.value(c, radiance[static_cast<int>(c)]))));
+    }
+  }
+  raster::ImageView photograph() const {
+    return {rows.data(), kWidth, kHeight, 3, std::ptrdiff_t{3} * kWidth};
+  }
+};
+
+Scene ball_at(const glm::vec3& center) {
+  Scene scene;
+  scene.objects.push_back({.name = "ball",
+                           .model = test::model_of(test::icosphere_mesh(0.2f, 2)),
+                           .world_from_model = test::placed(center)});
+  return scene;
+}
+
+std::vector<std::uint8_t> draw(DifferentialMethod& method, const Setting& setting,
+                               const Scene& objects, const DifferentialOptions& options,
+                               int threads = 1, raster::Isa isa = raster::Isa::best) {
+  const ShadowPrecision precision = options.take.precision;
+  const bool wide = precision == ShadowPrecision::values || precision == ShadowPrecision::radiance;
+  Picture picture(wide ? raster::ColorFormat::rgba32f : raster::ColorFormat::rgba8);
+  const raster::ImageView photograph = setting.photograph();
+  const raster::Frame frame =
+      method.record(objects, setting.camera, photograph, picture.targets(), options);
+  raster::execute(frame, {.threads = threads, .isa = isa});
+  return precision == ShadowPrecision::radiance
+             ? map_radiance(photograph, picture.color, setting.scene.tone, threads)
+             : picture.color.to_rgba8_rows();
+}
+
+std::vector<std::uint8_t> draw(const Setting& setting, const Scene& objects,
+                               const DifferentialOptions& options) {
+  DifferentialMethod method(setting.scene, setting.paths);
+  return draw(method, setting, objects, options);
+}
+
+constexpr ShadowPrecision kPrecisions[] = {ShadowPrecision::bytes, ShadowPrecision::dithered,
+                                           ShadowPrecision::values, ShadowPrecision::radiance};
+
+double rms(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b,
+           std::size_t channels_b, const std::vector<std::uint8_t>& where) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    if (!where[i]) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double d = static_cast<double>(a[4 * i + c]) - b[channels_b * i + c];
+      sum += d * d;
+      ++count;
+    }
+  }
+  return std::sqrt(sum / static_cast<double>(count));
+}
+
+TEST(Differential, WithoutAnObjectThePhotographKeepsItsBytes) {
+  const Setting setting;
+  for (const ShadowPrecision precision : kPrecisions) {
+    const auto out = draw(setting, {}, {.take = {.precision = precision}});
+    for (std::size_t i = 0; i < setting.rows.size() / 3; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(out[4 * i + c], setting.rows[3 * i + c]);
+      ASSERT_EQ(out[4 * i + 3], 0);
+    }
+  }
+}
+
+TEST(Differential, OutsideTheShadowAndTheObjectThePhotographKeepsItsBytes) {
+  const Setting setting;
+  const Scene ball = ball_at({0.3f, 0.25f, 0.0f});
+  const auto out = draw(setting, ball, {});
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < setting.rows.size() / 3; ++i) {
+    bool same = true;
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (out[4 * i + 3] == 0) {
+        EXPECT_LE(out[4 * i + c], setting.rows[3 * i + c]);
+      }
+      same = same && out[4 * i + c] == setting.rows[3 * i + c];
+    }
+    changed += same ? 0 : 1;
+  }
+  EXPECT_GT(changed, 500u);
+  EXPECT_LT(changed, static_cast<std::size_t>(kWidth * kHeight) * 9 / 10);
+}
+
+// Oracle: rays to sixteen points of every patch.
+TEST(Differential, IsNearTheReferenceAndNearerWithMorePasses) {
+  const Setting setting;
+  const Scene ball = ball_at({0.3f, 0.3f, 0.0f});
+  const DifferentialReference reference(setting.scene, ball);
+  const auto exact = reference.render(pixel_rays(setting.camera), setting.rows, {.samples = 16});
+  std::vector<std::uint8_t> where;
+  for (std::size_t i = 0; i < exact.shadow.size(); ++i)
+    where.push_back(exact.shadow[i] && !exact.object[i] ? 1 : 0);
+  std::vector<std::uint8_t> photograph;
+  for (std::size_t i = 0; i < setting.rows.size(); i += 3)
+    photograph.insert(photograph.end(),
+                      {setting.rows[i], setting.rows[i + 1], setting.rows[i + 2], 0});
+  const double nothing = rms(photograph, exact.pixels, 3, where);
+  double before = nothing;
+  for (const std::size_t passes : {2, 10, 600}) {
+    const double error = rms(draw(setting, ball, {.take = {.passes = passes,
+                                                           .precision = ShadowPrecision::radiance}}),
+                             exact.pixels, 3, where);
+    std::printf("%zu passes: rms %.3f of %.3f\n", passes, error, nothing);
+    EXPECT_LT(error, before) << passes;
+    before = error;
+  }
+  EXPECT_LT(before, 0.15 * nothing);
+}
+
+TEST(Differential, VolumesAndMapsAgreeButForTexelsAlongOutlines) {
+  const Setting setting;
+  const Scene ball = ball_at({0.3f, 0.3f, 0.0f});
+  const auto maps = draw(setting, ball, {.map_size = 1024});
+  const auto volumes = draw(setting, ball, {.mask = ShadowMask::volumes});
+  std::vector<std::uint8_t> all(maps.size() / 4, 1);
+  EXPECT_LT(rms(maps, volumes, 4, all), 0.6);
+}
+
+// Oracle: what is taken in floats, not rounded at all.
+TEST(Differential, BytesLoseFaintShadowsAndDitherKeepsThemOnAverage) {
+  const Setting setting;
+  const Scene ball = ball_at({0.3f, 0.5f, 0.0f});
+  const auto taken = [&](ShadowPrecision precision) {
+    DifferentialMethod method(setting.scene, setting.paths);
+    Picture picture(precision == ShadowPrecision::values ? raster::ColorFormat::rgba32f
+                                                         : raster::ColorFormat::rgba8);
+    raster::execute(method.record(ball, setting.camera, setting.photograph(), picture.targets(),
+                                  {.take = {.passes = 500, .precision = precision}}));
+    double sum = 0.0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const glm::vec4 at = picture.color.at(x, y);
+        if (at.w == 0.0f)
+          sum += setting.rows[static_cast<std::size_t>(3 * (y * kWidth + x))] - 255.0 * at.x;
+      }
+    }
+    return sum;
+  };
+  const double exact = taken(ShadowPrecision::values), bytes = taken(ShadowPrecision::bytes),
+               dithered = taken(ShadowPrecision::dithered);
+  std::printf("taken: floats %.0f, bytes %.0f, dithered %.0f\n", exact, bytes, dithered);
+  EXPECT_LT(bytes, 0.9 * exact);
+  EXPECT_NEAR(dithered, exact, 0.05 * exact);
+}
+
+TEST(Differential, IsTheSameForEveryNumberOfThreadsAndVectorWidth) {
+  const Setting setting;
+  const Scene ball = ball_at({0.3f, 0.3f, 0.0f});
+  DifferentialMethod method(setting.scene, setting.paths);
+  for (const ShadowPrecision precision : kPrecisions) {
+    for (const ShadowMask mask : {ShadowMask::map, ShadowMask::volumes}) {
+      DifferentialOptions options{.take = {.passes = 12, .precision = precision, .threads = 1}, .mask = mask};
+      const auto expected = draw(method, setting, ball, options, 1, raster::Isa::scalar);
+      for (const raster::Isa isa : raster::available_isas()) {
+        for (const int threads : {1, 2, 3, 7}) {
+          options.take.threads = threads;
+          EXPECT_TRUE(draw(method, setting, ball, options, threads, isa) == expected);
+        }
+      }
+    }
+  }
+}
+
+TEST(Differential, AnObjectAroundASourceIsLeftOutNotDrawnWrongly) {
+  const Setting setting;
+  DifferentialMethod method(setting.scene, setting.paths);
+  Picture picture;
+  const Scene ball = ball_at({0.4f, 2.9f, -0.2f});
+  const raster::Frame frame =
+      method.record(ball, setting.camera, setting.photograph(), picture.targets(), {});
+  raster::execute(frame);
+  EXPECT_GT(method.shadows().left_out, 0u);
+}
+
+TEST(Differential, OfADarkRoomChangesNothing) {
+  Setting setting;
+  std::fill(setting.scene.radiance.begin(), setting.scene.radiance.end(), glm::vec3(0.0f));
+  std::vector<std::uint32_t> all(setting.scene.model.patches.size());
+  std::iota(all.begin(), all.end(), 0u);
+  setting.paths = find_light_paths(setting.scene, all, {});
+  const auto out = draw(setting, ball_at({0.3f, 0.3f, 0.0f}), {});
+  for (std::size_t i = 0; i < out.size() / 4; ++i) {
+    if (out[4 * i + 3] == 0) {
+      ASSERT_EQ(out[4 * i], setting.rows[3 * i]);
+    }
+  }
+}
+
+TEST(Differential, RefusesTargetsOfTheOtherFormat) {
+  const Setting setting;
+  DifferentialMethod method(setting.scene, setting.paths);
+  Picture wide(raster::ColorFormat::rgba32f);
+  EXPECT_THROW(method.record({}, setting.camera, setting.photograph(), wide.targets(), {}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gnomon::pipeline

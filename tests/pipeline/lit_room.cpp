@@ -1,0 +1,75 @@
+#include "tests/pipeline/lit_room.h"
+
+#include <array>
+#include <numbers>
+
+#include <glm/vec3.hpp>
+
+#include "pipeline/patch_light.h"
+#include "tests/pipeline/test_meshes.h"
+
+namespace gnomon::test {
+namespace {
+
+constexpr const char* kPanel = "panel";
+
+/// A rectangle from its corner along two edges, facing cross(u, v).
+pipeline::Object rectangle(const char* name, const glm::vec3& corner, const glm::vec3& u,
+                           const glm::vec3& v) {
+  pipeline::Mesh mesh;
+  for (const glm::vec3& p : {corner, corner + u, corner + u + v, corner + v})
+    mesh.positions.emplace_back(p, 1.0f);
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return {.name = name, .role = pipeline::Role::phantom, .model = model_of(mesh)};
+}
+
+}  // namespace
+
+pipeline::Scene room_surfaces(const RoomOptions& options) {
+  const glm::vec3 x(4.0f, 0.0f, 0.0f), y(0.0f, 3.0f, 0.0f), z(0.0f, 0.0f, 4.0f);
+  const glm::vec3 low(-2.0f, 0.0f, -2.0f), high(2.0f, 3.0f, 2.0f);
+  pipeline::Scene scene;
+  scene.objects = {rectangle("floor", low, z, x),    rectangle("ceiling", low + y, x, z),
+                   rectangle("back", low, x, y),     rectangle("front", low + z, y, x),
+                   rectangle("left", low, y, z),     rectangle("right", low + x, z, y)};
+  const float half = options.panel_half_m;
+  scene.objects.push_back(rectangle(kPanel, {0.4f - half, 2.9f, -0.2f - half},
+                                    {2.0f * half, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f * half}));
+  if (options.table) {
+    scene.objects.push_back({.name = "table",
+                             .role = pipeline::Role::phantom,
+                             .model = model_of(box_mesh({0.4f, 0.02f, 0.4f})),
+                             .world_from_model = placed({-1.0f, 0.68f, -1.0f})});
+  }
+  return scene;
+}
+
+pipeline::LitScene lit_room(const RoomOptions& options) {
+  pipeline::LitScene scene;
+  scene.model = pipeline::make_patches(room_surfaces(options), options.patches);
+  scene.tone = pipeline::ToneCurve::from_gamma(2.2, 3.0);
+  const std::size_t count = scene.model.patches.size();
+  std::vector<glm::vec3> emitted(count, glm::vec3(0.0f));
+  scene.reflectance.assign(count, glm::vec3(options.reflectance));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (scene.model.surfaces[scene.model.patches[i].surface] != kPanel) continue;
+    emitted[i] = glm::vec3(1.0f, 0.9f, 0.8f) * options.panel_radiance;
+    scene.reflectance[i] = glm::vec3(0.0f);
+  }
+  scene.radiance = emitted;
+  const pipeline::PatchVisibility visibility(scene.model);
+  for (int bounce = 0; bounce < options.bounces; ++bounce) {
+    std::vector<glm::vec3> next = emitted;
+    for (std::size_t i = 0; i < count; ++i) {
+      const pipeline::Patch& patch = scene.model.patches[i];
+      next[i] += scene.reflectance[i] *
+                 glm::vec3(pipeline::irradiance(scene.model, scene.radiance, visibility,
+                                                patch.center, patch.normal, 1) /
+                           std::numbers::pi);
+    }
+    scene.radiance = next;
+  }
+  return scene;
+}
+
+}  // namespace gnomon::test
