@@ -299,6 +299,14 @@ double rotation_between_rad(const glm::dmat4& a, const glm::dmat4& b) {
   return 2.0 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), std::abs(q.w));
 }
 
+bool is_rotation(const glm::dmat3& m) {
+  const glm::dmat3 product = glm::transpose(m) * m;
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(product[c][k] - (c == k ? 1.0 : 0.0)) > kRigidTolerance) return false;
+  return glm::determinant(m) > 0.0;
+}
+
 glm::dmat4 rigid_inverse(const glm::dmat4& m) {
   const glm::dmat3 r = glm::transpose(glm::dmat3(m));
   glm::dmat4 result(r);

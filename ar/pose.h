@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
@@ -76,6 +77,13 @@ class PoseChooser {
 
 /// Angle of the rotation between two rigid transforms, in radians.
 double rotation_between_rad(const glm::dmat4& a, const glm::dmat4& b);
+
+/// How far the entries of a rotation's product with its transpose may be from the identity's:
+/// matrices written with six digits are still rotations.
+inline constexpr double kRigidTolerance = 1e-5;
+
+/// Whether a matrix is a rotation, within kRigidTolerance.
+bool is_rotation(const glm::dmat3& m);
 
 /// Inverse of a rotation and translation.
 glm::dmat4 rigid_inverse(const glm::dmat4& m);

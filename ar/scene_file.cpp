@@ -33,17 +33,7 @@ class SceneReader {
   explicit SceneReader(const fs::path& path) { scene_.file = path; }
 
   SceneFile read() {
-    const std::vector<std::uint8_t> bytes = read_file(scene_.file, kMaxSceneBytes);
-    toml::table root;
-    try {
-      root =
-          toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-    } catch (const toml::parse_error& e) {
-      throw InputError(fmt::format("{}:{}: {}", one_line(scene_.file.string()),
-                                   e.source().begin.line, one_line(e.description())));
-    }
-    // Before the keys: another format has other keys.
-    check_format(root);
+    const toml::table root = load_toml(scene_.file, kMaxSceneBytes, kSceneFormat);
     const TomlTable top(
         scene_.file, root, "",
         {"format", "ambient", "camera", "detection", "dictionary", "tag", "tags_yaml", "body",
@@ -67,15 +57,6 @@ class SceneReader {
   }
 
  private:
-  void check_format(const toml::table& root) {
-    const toml::node* node = root.get("format");
-    if (node == nullptr)
-      fail_at(scene_.file, root, fmt::format("format: missing (accepted: \"{}\")", kSceneFormat));
-    if (node->value<std::string>() != std::string(kSceneFormat))
-      fail_at(scene_.file, *node,
-              fmt::format("format: {} is not read (accepted: \"{}\")", shown(*node), kSceneFormat));
-  }
-
   /// "[object 'torus']" once the name is known.
   std::string place_of(const toml::table& table, const std::string& kind) const {
     const std::optional<std::string> name = table["name"].value<std::string>();
@@ -123,15 +104,7 @@ class SceneReader {
     if (t.has("axes") && !t.has("world_from_camera")) t.fail("axes", "without world_from_camera");
     if (looks) scene_.world_from_camera = read_look_at(t);
     if (!t.has("world_from_camera")) return;
-    const std::string axes = t.text("axes").value_or("opencv");
-    if (axes != "opencv" && axes != "opengl")
-      t.fail("axes", fmt::format("'{}' is not one of opencv, opengl", axes));
-    glm::dmat4 pose = read_pose(t, "world_from_camera", false);
-    if (axes == "opengl") {
-      pose[1] = -pose[1];
-      pose[2] = -pose[2];
-    }
-    scene_.world_from_camera = pose;
+    scene_.world_from_camera = read_world_from_camera(t);
   }
 
   void read_dictionary(const toml::table& table) {

@@ -9,20 +9,11 @@
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "ar/pose.h"
+
 namespace gnomon::ar {
 
 namespace {
-
-/// Matrices written with six digits are still rotations.
-constexpr double kRigidTolerance = 1e-5;
-
-bool is_rotation(const glm::dmat3& r) {
-  const glm::dmat3 product = glm::transpose(r) * r;
-  for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < 3; ++k)
-      if (std::abs(product[c][k] - (c == k ? 1.0 : 0.0)) > kRigidTolerance) return false;
-  return glm::determinant(r) > 0.0;
-}
 
 /// R = Rz * Ry * Rx: first about x, then about y, then about z, axes fixed.
 glm::dmat3 rotation_from_degrees(glm::dvec3 degrees) {
@@ -69,6 +60,14 @@ glm::dmat4 read_pose(const TomlTable& t, std::string_view matrix_key, bool scala
       t.vector("position_m", -kMaxMetres, kMaxMetres).value_or(glm::dvec3(0.0));
   pose[3] = glm::dvec4(position, 1.0);
   return pose;
+}
+
+glm::dmat4 read_world_from_camera(const TomlTable& t) {
+  const std::string axes = t.text("axes").value_or("opencv");
+  if (axes != "opencv" && axes != "opengl")
+    t.fail("axes", fmt::format("'{}' is not one of opencv, opengl", axes));
+  const glm::dmat4 pose = read_pose(t, "world_from_camera", false);
+  return axes == "opengl" ? pose * opengl_from_opencv_axes() : pose;
 }
 
 glm::dmat4 read_look_at(const TomlTable& t) {

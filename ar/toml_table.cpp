@@ -28,6 +28,25 @@ std::string shown(const toml::node& node) {
   return line;
 }
 
+toml::table load_toml(const fs::path& file, std::uint64_t max_bytes, std::string_view format) {
+  const std::vector<std::uint8_t> bytes = read_file(file, max_bytes);
+  toml::table root;
+  try {
+    root = toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  } catch (const toml::parse_error& e) {
+    throw InputError(fmt::format("{}:{}: {}", one_line(file.string()), e.source().begin.line,
+                                 one_line(e.description())));
+  }
+  // Before the keys: another format has other keys.
+  const toml::node* node = root.get("format");
+  if (node == nullptr)
+    fail_at(file, root, fmt::format("format: missing (accepted: \"{}\")", format));
+  if (node->value<std::string>() != std::string(format))
+    fail_at(file, *node,
+            fmt::format("format: {} is not read (accepted: \"{}\")", shown(*node), format));
+  return root;
+}
+
 TomlTable::TomlTable(const fs::path& file, const toml::table& table, std::string place,
                      std::initializer_list<std::string_view> known)
     : file_(file), table_(table), place_(std::move(place)) {

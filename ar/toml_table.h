@@ -2,6 +2,7 @@
 // range, and every complaint names file, line, table, key and value. Internal to ar/: shows toml++.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
@@ -21,6 +22,11 @@ inline constexpr double kAnyNumber = std::numeric_limits<double>::max();
 /// Throws InputError "FILE:LINE: what".
 [[noreturn]] void fail_at(const std::filesystem::path& file, const toml::node& node,
                           std::string_view what);
+
+/// The file's document, whose key `format` must have this value. Throws InputError "FILE:LINE: ..."
+/// also for a file over `max_bytes`.
+toml::table load_toml(const std::filesystem::path& file, std::uint64_t max_bytes,
+                      std::string_view format);
 
 class TomlTable {
  public:
