@@ -11,6 +11,9 @@ namespace gnomon::apps {
 /// gnomon ar SCENE: virtual objects and their shadows in a photograph or a video.
 void add_ar(CLI::App& program);
 
+/// gnomon capture FOLDER: the light of a real scene from photographs.
+void add_capture(CLI::App& program);
+
 /// gnomon compare A B: how much two pictures differ.
 void add_compare(CLI::App& program);
 

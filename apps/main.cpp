@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   program.footer(
       "Examples:\n"
       "  gnomon ar scene.toml --image photograph.png --out out --steps\n"
+      "  gnomon capture examples/soft --out soft.lit\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
       "  gnomon mesh check model.glb\n"
       "  gnomon render scene.toml --out out\n"
@@ -43,6 +44,7 @@ int run(int argc, char** argv) {
       "  gnomon golden --verify\n"
       "  gnomon COMMAND --help");
   gnomon::apps::add_ar(program);
+  gnomon::apps::add_capture(program);
   gnomon::apps::add_compare(program);
   gnomon::apps::add_golden(program);
   gnomon::apps::add_mesh(program);

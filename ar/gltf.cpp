@@ -188,6 +188,8 @@ class Reader {
       const std::string name = mesh.name.empty() ? "" : fmt::format(" '{}'", mesh.name);
       add_primitive(mesh.primitives[i], placed.world_from_node,
                     fmt::format("mesh {}{} primitive {}", node.mesh, name, i));
+      // A primitive may have been left out.
+      result_.part_nodes.resize(result_.model.parts.size(), node.name);
     }
   }
 

@@ -19,6 +19,8 @@ namespace gnomon::ar {
 /// A model and what was left out of it.
 struct GltfModel {
   pipeline::Model model;
+  /// The node that each part comes from.
+  std::vector<std::string> part_nodes;
   /// One sentence each: primitives, textures or nodes that were not used, and why.
   std::vector<std::string> notes;
 };
