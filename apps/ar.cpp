@@ -1,4 +1,6 @@
+#include <exception>
 #include <memory>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -11,11 +13,32 @@ namespace gnomon::apps {
 
 namespace {
 
+/// "16ms", "16" or "0.016s".
+double milliseconds(const std::string& text) {
+  std::size_t end = 0;
+  double value = 0.0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    end = 0;
+  }
+  const std::string unit = text.substr(end);
+  if (unit == "s") value *= 1000.0;
+  if (end == 0 || (unit != "" && unit != "ms" && unit != "s") || !(value >= 0.1 && value <= 60'000.0))
+    throw ar::InputError("--budget: '" + text + "' is no time from 0.1ms to 60s, such as 16ms");
+  return value;
+}
+
 void run(ArArguments& arguments) {
   const int inputs = !arguments.image.empty() + !arguments.video.empty() + (arguments.camera >= 0);
   if (inputs != 1)
     throw ar::InputError("ar: exactly one of --image, --video and --camera is needed");
-  arguments.session.method = counting_named(arguments.method);
+  arguments.session.differential = arguments.method == "differential";
+  if (!arguments.session.differential)
+    arguments.session.method = counting_named(arguments.method);
+  if (arguments.passes > 0) arguments.session.passes = arguments.passes;
+  if (!arguments.budget.empty()) arguments.session.budget_ms = milliseconds(arguments.budget);
+  arguments.session.still = !arguments.image.empty();
   arguments.session.steps = arguments.steps;
   arguments.session.frame = !arguments.save_frame.empty();
   if (!arguments.image.empty()) return run_still(arguments);
@@ -45,9 +68,22 @@ void add_ar(CLI::App& program) {
       "One line of JSON: tags, poses, passes, milliseconds a stage (video: a line a frame)");
   command
       ->add_option("--method", arguments->method,
-                   "How volumes are counted (default: the scene's). zpass is the paper's and wrong "
-                   "where the camera stands in a shadow; auto takes zfail there")
-      ->check(CLI::IsMember({"zpass", "zfail", "auto"}));
+                   "How shadows are found (default: the scene's). By volumes: zpass is Haller's and "
+                   "wrong where the camera stands in a shadow; auto takes zfail there. differential: "
+                   "soft shadows from the real scene's own light (gnomon capture)")
+      ->check(CLI::IsMember({"zpass", "zfail", "auto", "differential"}));
+  command->add_option("--lit-scene", arguments->session.lit_scene,
+                      "What gnomon capture wrote, for differential shadows (default: the scene's)");
+  CLI::Option* passes =
+      command
+          ->add_option("--passes", arguments->passes,
+                       "Sources of light that shadows are made for, at most (default: the scene's, "
+                       "or 50)")
+          ->check(CLI::Range(1, 100'000));
+  command
+      ->add_option("--budget", arguments->budget,
+                   "As many passes as a frame of this time has room for, such as 16ms")
+      ->excludes(passes);
   command->add_flag("--double-shadows", arguments->session.double_shadows,
                     "Darken real surfaces also where they are in a real shadow already (the paper "
                     "to the letter)");
@@ -70,7 +106,9 @@ void add_ar(CLI::App& program) {
       "Examples:\n"
       "  gnomon ar examples/desk/01_torus_on_house.toml --image examples/desk/background.png --out "
       "out --steps\n"
-      "  gnomon ar scene.toml --video clip.avi --out out --method zfail --json");
+      "  gnomon ar scene.toml --video clip.avi --out out --method zfail --json\n"
+      "  gnomon ar examples/soft/suzanne.toml --image examples/soft/background.png --out out "
+      "--method differential --passes 100");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -12,8 +12,8 @@ struct ArArguments {
   std::filesystem::path scene, image, video, out, save_frame;
   int camera = -1;
   bool steps = false, as_json = false;
-  std::string method;
-  int frames = 0;
+  std::string method, budget;
+  int frames = 0, passes = 0;
   ar::SessionOptions session;
 };
 

@@ -50,6 +50,13 @@ json passes_json(const ar::Augmented& augmented) {
   return list;
 }
 
+json differential_json(const ar::DifferentialReport& report) {
+  return {{"sources", report.occluded_sources},
+          {"receivers", report.receivers},
+          {"shadows", report.shadows},
+          {"left_out", report.left_out}};
+}
+
 json stages_json(const ar::SessionResult& result) {
   const auto ms = [](double v) { return std::round(v * 1000.0) / 1000.0; };
   json stages = {{"track", ms(result.track_ms)}};

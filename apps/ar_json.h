@@ -17,6 +17,9 @@ nlohmann::json poses_json(const ar::SessionResult& result);
 /// [{label, commands}]
 nlohmann::json passes_json(const ar::Augmented& augmented);
 
+/// {sources, receivers, shadows, left_out}
+nlohmann::json differential_json(const ar::DifferentialReport& report);
+
 /// Milliseconds a stage, to microseconds.
 nlohmann::json stages_json(const ar::SessionResult& result);
 

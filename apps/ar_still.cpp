@@ -52,12 +52,14 @@ void run_still(const ArArguments& arguments) {
   ar::write_png(arguments.out / "shadow_mask.png", augmented.shadow_mask);
   ar::write_png(arguments.out / "shadow_on_virtual.png", augmented.shadow_on_virtual);
   ar::write_png(arguments.out / "object_mask.png", augmented.object_mask);
-  ar::write_png(arguments.out / "stencil_counts.png", augmented.stencil_counts);
+  // Differential shadows count no volumes that stay in the stencil buffer.
+  if (!augmented.stencil_counts.pixels.empty())
+    ar::write_png(arguments.out / "stencil_counts.png", augmented.stencil_counts);
   if (arguments.steps) write_steps(arguments.out, augmented.steps);
   if (!arguments.save_frame.empty()) ar::write_frame(arguments.save_frame, augmented.frame);
 
   if (arguments.as_json) {
-    const json line = {{"image", arguments.image.string()},
+    json line = {{"image", arguments.image.string()},
                        {"tags", detections_json(result.track)},
                        {"poses", poses_json(result)},
                        {"left_out", result.left_out},
@@ -68,6 +70,7 @@ void run_still(const ArArguments& arguments) {
                          {"shadow_on_virtual", count_set(augmented.shadow_on_virtual)},
                          {"object", count_set(augmented.object_mask)}}},
                        {"ms", stages_json(result)}};
+    if (result.differential) line["differential"] = differential_json(*result.differential);
     // A file's name is bytes; those that are no UTF-8 are replaced.
     std::cout << line.dump(-1, ' ', false, json::error_handler_t::replace) << '\n';
     return;
@@ -79,6 +82,13 @@ void run_still(const ArArguments& arguments) {
       arguments.image.string(), result.track.detections.size(), augmented.passes.size(),
       count_set(augmented.object_mask), count_set(augmented.shadow_mask),
       count_set(augmented.shadow_on_virtual));
+  if (const auto& d = result.differential)
+    std::cout << fmt::format(
+        "{} shadows for {} sources whose light may be hidden from {} patches{}\n", d->shadows,
+        d->occluded_sources, d->receivers,
+        d->left_out > 0 ? fmt::format("; {} left out: an object is around them or too near",
+                                      d->left_out)
+                        : "");
   std::cout << "wrote " << (arguments.out / "composite.png").string() << " and its masks\n";
 }
 

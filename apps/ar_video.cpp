@@ -64,16 +64,17 @@ void run_video(const ArArguments& arguments) {
       const ar::SessionResult result = session.process(frame->image, frame->time_s);
       writer.write(result.augmented ? result.augmented->composite : frame->image);
       summary.add(result);
-      if (arguments.as_json)
-        std::cout << json{{"frame", frame->index},
-                          {"time_s", frame->time_s},
-                          {"tags", detections_json(result.track)},
-                          {"poses", poses_json(result)},
-                          {"left_out", result.left_out},
-                          {"augmented", result.augmented.has_value()},
-                          {"ms", stages_json(result)}}
-                         .dump()
-                  << '\n';
+      if (arguments.as_json) {
+        json line = {{"frame", frame->index},
+                     {"time_s", frame->time_s},
+                     {"tags", detections_json(result.track)},
+                     {"poses", poses_json(result)},
+                     {"left_out", result.left_out},
+                     {"augmented", result.augmented.has_value()},
+                     {"ms", stages_json(result)}};
+        if (result.differential) line["differential"] = differential_json(*result.differential);
+        std::cout << line.dump() << '\n';
+      }
       progress.show(summary.frames);
     }
   }

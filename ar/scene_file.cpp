@@ -12,6 +12,7 @@
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/gltf.h"
+#include "ar/differential_keys.h"
 #include "ar/map_keys.h"
 #include "ar/model_file.h"
 #include "ar/toml_pose.h"
@@ -37,7 +38,7 @@ class SceneReader {
     const TomlTable top(
         scene_.file, root, "",
         {"format", "ambient", "camera", "detection", "dictionary", "tag", "tags_yaml", "body",
-         "group", "object", "light", "caster", "shadow", "filter"});
+         "group", "object", "light", "caster", "shadow", "differential", "filter"});
     if (const auto ambient = top.vector("ambient", 0.0, 1.0)) scene_.ambient = *ambient;
     read_camera_table(top);
     for (const toml::table* t : top.tables("dictionary")) read_dictionary(*t);
@@ -51,6 +52,8 @@ class SceneReader {
     for (const toml::table* t : top.tables("light")) read_light(*t);
     for (const toml::table* t : top.tables("caster")) read_caster(*t);
     read_shadow(top);
+    if (const toml::table* table = top.table("differential"))
+      scene_.differential = read_differential(scene_.file, *table);
     read_filter(top);
     check_whole(root);
     return std::move(scene_);
@@ -371,7 +374,8 @@ class SceneReader {
 
   void check_whole(const toml::table& root) {
     if (scene_.objects.empty()) fail_at(scene_.file, root, "object: missing: nothing to draw");
-    if (scene_.lights.empty()) fail_at(scene_.file, root, "light: missing: no light, no shadow");
+    if (scene_.lights.empty() && !scene_.differential)
+      fail_at(scene_.file, root, "light: missing: no light, no shadow");
   }
 
   SceneFile scene_;
@@ -400,6 +404,7 @@ std::vector<fs::path> input_files(const SceneFile& scene) {
   if (!scene.camera_file.empty()) files.push_back(scene.camera_file);
   if (scene.response_file) files.push_back(*scene.response_file);
   if (scene.tags_yaml) files.push_back(scene.tags_yaml->file);
+  if (scene.differential) files.push_back(scene.differential->lit_scene);
   for (const CustomDictionary& dictionary : scene.dictionaries) files.push_back(dictionary.file);
   for (const SceneObject& object : scene.objects) files.push_back(object.model);
   files.insert(files.end(), scene.light_models.begin(), scene.light_models.end());

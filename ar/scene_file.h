@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include "ar/camera.h"
+#include "ar/differential_augment.h"
 #include "ar/tag_layout.h"
 #include "ar/tags.h"
 #include "pipeline/map_settings.h"
@@ -73,6 +74,12 @@ struct ShadowSettings {
   bool double_shadows = false;
 };
 
+/// Soft shadows from a real scene's own light: its file (docs/capture.md), and how they are made.
+struct DifferentialFile {
+  std::filesystem::path lit_scene;
+  DifferentialSettings settings;
+};
+
 /// The one-euro filter that calms tag jitter; its numbers as in docs/scene.md.
 struct FilterSettings {
   bool on = true;
@@ -114,6 +121,8 @@ struct SceneFile {
   std::vector<SceneCaster> casters;
   glm::vec3 ambient{0.3f};
   ShadowSettings shadow;
+  /// In place of shadow volumes, where the scene file has them.
+  std::optional<DifferentialFile> differential;
   FilterSettings filter;
 };
 

@@ -6,6 +6,7 @@
 
 #include "ar/camera.h"
 #include "ar/error.h"
+#include "ar/lit_scene_file.h"
 #include "ar/response.h"
 #include "ar/scene_nodes.h"
 #include "ar/shadow_settings.h"
@@ -27,6 +28,31 @@ AugmentOptions augment_options(const SceneFile& file, const SessionOptions& opti
   out.masks = options.masks;
   out.steps = options.steps;
   out.frame = options.frame;
+  return out;
+}
+
+/// Absent: shadow volumes.
+std::optional<DifferentialFile> differential_file(const SceneFile& file,
+                                                  const SessionOptions& options) {
+  if (options.method || !(options.differential || file.differential)) return std::nullopt;
+  DifferentialFile out = file.differential.value_or(DifferentialFile{});
+  if (!options.lit_scene.empty()) out.lit_scene = options.lit_scene;
+  if (out.lit_scene.empty())
+    throw InputError(file.file.string() +
+                     ": [differential].lit_scene: missing, and no --lit-scene was given");
+  DifferentialSettings& settings = out.settings;
+  if (options.passes) {
+    settings.method.take.passes = *options.passes;
+    settings.budget_ms = 0.0;
+  }
+  if (options.budget_ms) settings.budget_ms = *options.budget_ms;
+  settings.samples = options.samples;
+  settings.threads = options.threads;
+  settings.near_m = file.near_m;
+  settings.far_m = file.far_m;
+  settings.masks = options.masks;
+  settings.steps = options.steps;
+  settings.frame = options.frame;
   return out;
 }
 
@@ -62,6 +88,11 @@ struct Session::Impl {
   TagLayout layout;
   Lens lens;
   Augmenter augmenter;
+  /// Made with the first picture that has a pose, since receivers may depend on it.
+  std::optional<DifferentialFile> differential_settings;
+  std::shared_ptr<const pipeline::LitScene> lit;
+  std::optional<DifferentialAugmenter> differential;
+  bool still;
   std::optional<Tracker> tracker;
   std::vector<std::string> notes;
   std::optional<SceneNodes> nodes;
@@ -70,7 +101,12 @@ struct Session::Impl {
       : file(scene_file),
         layout(scene_file.tags),
         lens(camera_of(scene_file, width, height)),
-        augmenter(lens, augment_options(scene_file, options)) {
+        augmenter(lens, augment_options(scene_file, options)),
+        differential_settings(differential_file(scene_file, options)),
+        still(options.still) {
+    if (differential_settings)
+      lit = std::make_shared<const pipeline::LitScene>(
+          read_lit_scene(differential_settings->lit_scene));
     const auto is_virtual = [](const SceneObject& o) {
       return o.role == pipeline::Role::virtual_object;
     };
@@ -116,6 +152,20 @@ struct Session::Impl {
     return *file.world_from_camera * *body->camera_from_body;
   }
 
+  void augment(const Image& picture, SessionResult& result) {
+    const glm::dmat4& pose = *result.world_from_camera;
+    if (!lit) {
+      result.augmented = augmenter.augment(picture, result.scene, pose);
+      return;
+    }
+    const bool stays = still || file.world_from_camera;
+    if (!differential)
+      differential.emplace(lens, lit, stays ? std::optional(pose) : std::nullopt,
+                           differential_settings->settings);
+    result.augmented = differential->augment(picture, result.scene, pose);
+    result.differential = differential->report();
+  }
+
   void place(SessionResult& result) {
     for (const std::string& body : nodes->bodies())
       nodes->place(body, world_from_body(result, body));
@@ -142,8 +192,7 @@ SessionResult Session::process(const Image& picture, double time_s) {
   const bool placed = std::any_of(
       result.scene.objects.begin(), result.scene.objects.end(),
       [](const pipeline::Object& o) { return o.role == pipeline::Role::virtual_object; });
-  if (placed)
-    result.augmented = impl_->augmenter.augment(picture, result.scene, *result.world_from_camera);
+  if (placed) impl_->augment(picture, result);
   return result;
 }
 
@@ -160,6 +209,8 @@ std::string Session::known_tags() const {
   return names;
 }
 
-const PinholeView& Session::view() const { return impl_->augmenter.view(); }
+const PinholeView& Session::view() const {
+  return impl_->differential ? impl_->differential->view() : impl_->augmenter.view();
+}
 
 }  // namespace gnomon::ar

@@ -2,6 +2,8 @@
 // draws.
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +12,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "ar/augment.h"
+#include "ar/differential_augment.h"
 #include "ar/image.h"
 #include "ar/scene_file.h"
 #include "ar/tracker.h"
@@ -18,8 +21,16 @@
 namespace gnomon::ar {
 
 struct SessionOptions {
-  /// Instead of the scene file's own.
+  /// Instead of the scene file's own; volumes also where that has a [differential] table.
   std::optional<pipeline::VolumeMethod> method;
+  /// Shadows from the real scene's light, and what differs from the scene file's table; the file
+  /// is needed where there is no such table.
+  bool differential = false;
+  std::filesystem::path lit_scene;
+  std::optional<std::size_t> passes;
+  std::optional<double> budget_ms;
+  /// The one picture of a camera that does not move.
+  bool still = false;
   bool double_shadows = false;
   /// As in AugmentOptions.
   int samples = 0, threads = 0;
@@ -39,6 +50,8 @@ struct SessionResult {
   /// Absent when nothing could be placed: the photograph stays as it is.
   std::optional<Augmented> augmented;
   double track_ms = 0.0;
+  /// Of differential shadows.
+  std::optional<DifferentialReport> differential;
 };
 
 class Session {
@@ -56,6 +69,7 @@ class Session {
   const std::vector<std::string>& notes() const;
   /// The ids that the scene knows, for messages.
   std::string known_tags() const;
+  /// The view that pictures are drawn in; of differential shadows once one was.
   const PinholeView& view() const;
 
  private:
