@@ -33,7 +33,8 @@ DifferentialFile read_differential(const std::filesystem::path& file, const toml
                      "self_shadows", "power_share", "prune_share", "drop_pruned",
                      "whole_clusters"});
   DifferentialFile out;
-  out.lit_scene = t.required("lit_scene", t.file("lit_scene"));
+  // Absent, the command line names it.
+  out.lit_scene = t.file("lit_scene").value_or("");
   DifferentialSettings& settings = out.settings;
   pipeline::ShadowTakeOptions& take = settings.method.take;
   if (t.has("passes") && t.has("budget_ms"))

@@ -404,7 +404,8 @@ std::vector<fs::path> input_files(const SceneFile& scene) {
   if (!scene.camera_file.empty()) files.push_back(scene.camera_file);
   if (scene.response_file) files.push_back(*scene.response_file);
   if (scene.tags_yaml) files.push_back(scene.tags_yaml->file);
-  if (scene.differential) files.push_back(scene.differential->lit_scene);
+  if (scene.differential && !scene.differential->lit_scene.empty())
+    files.push_back(scene.differential->lit_scene);
   for (const CustomDictionary& dictionary : scene.dictionaries) files.push_back(dictionary.file);
   for (const SceneObject& object : scene.objects) files.push_back(object.model);
   files.insert(files.end(), scene.light_models.begin(), scene.light_models.end());

@@ -1,7 +1,8 @@
 // Differential shadows against photographs of the real thing, and against rays.
 // Usage: measure_differential LIT_SCENE CAPTURE TRUTH [OUT]   where CAPTURE has background.png,
 // camera.yml and camera_pose.json, TRUTH a folder for each photograph with photo.png, pose.json and
-// object_mask.png; models are looked for beside CAPTURE's own. Pictures go to OUT.
+// object_mask.png; models are looked for beside CAPTURE's own. Pictures go to OUT; references that lie
+// there already (NAME_reference.png) are read and not made again.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -74,7 +75,8 @@ Capture read(const fs::path& lit, const fs::path& capture, const fs::path& truth
   for (const fs::path& folder : folders) {
     Truth one{folder.filename().string(), read_image_rgb(folder / "photo.png"),
               read_image(folder / "object_mask.png"), {}};
-    for (const json& object : load(folder / "pose.json").at("objects")) {
+    const json pose = load(folder / "pose.json");
+    for (const json& object : pose.at("objects")) {
       const std::string model = object.at("model").get<std::string>();
       one.scene.objects.push_back(
           {.name = model,
@@ -193,6 +195,36 @@ double median_ms(DifferentialAugmenter& augmenter, const Image& background,
   return whole[5];
 }
 
+/// The picture, and as its mask's channels: object, shadow.
+pipeline::ReferencePicture reference_of(const Capture& capture, const Truth& truth,
+                                        const std::vector<pipeline::Ray>& rays,
+                                        const fs::path& out) {
+  const fs::path file = out / (truth.name + "_reference.png");
+  const fs::path mask_file = out / (truth.name + "_reference_mask.png");
+  if (!out.empty() && fs::exists(file) && fs::exists(mask_file)) {
+    pipeline::ReferencePicture known{read_image_rgb(file).pixels, {}, {}};
+    const Image mask = read_image_rgb(mask_file);
+    for (std::size_t i = 0; i < mask.pixels.size(); i += 3) {
+      known.object.push_back(mask.pixels[i] != 0 ? 1 : 0);
+      known.shadow.push_back(mask.pixels[i + 1] != 0 ? 1 : 0);
+    }
+    return known;
+  }
+  const pipeline::DifferentialReference reference(*capture.lit, truth.scene);
+  pipeline::ReferencePicture made = reference.render(rays, capture.background.pixels, {});
+  if (out.empty()) return made;
+  Image picture = capture.background, mask = capture.background;
+  picture.pixels = made.pixels;
+  for (std::size_t i = 0; i < made.object.size(); ++i) {
+    mask.pixels[3 * i] = made.object[i] ? 255 : 0;
+    mask.pixels[3 * i + 1] = made.shadow[i] ? 255 : 0;
+    mask.pixels[3 * i + 2] = 0;
+  }
+  write_png(file, picture);
+  write_png(mask_file, mask);
+  return made;
+}
+
 void measure(const Capture& capture, const fs::path& out) {
   const std::vector<pipeline::Ray> rays = photo_rays(capture);
   const Image& background = capture.background;
@@ -203,8 +235,7 @@ void measure(const Capture& capture, const fs::path& out) {
              "reference | s |\n");
   for (const Truth& truth : capture.truths) {
     Stopwatch watch;
-    const pipeline::DifferentialReference reference(*capture.lit, truth.scene);
-    references.push_back(reference.render(rays, background.pixels, {}));
+    references.push_back(reference_of(capture, truth, rays, out));
     const double seconds = watch.lap_ms() / 1000.0;
     regions.push_back(shadow_region(truth, references.back(), background));
     const auto& region = regions.back();
@@ -215,11 +246,6 @@ void measure(const Capture& capture, const fs::path& out) {
                strength(background.pixels, truth.photo.pixels, region),
                strength(background.pixels, references.back().pixels, region), seconds);
     std::fflush(stdout);
-    if (!out.empty()) {
-      Image picture = background;
-      picture.pixels = references.back().pixels;
-      write_png(out / (truth.name + "_reference.png"), picture);
-    }
   }
   const Lens lens(capture.camera);
   fmt::print("\n| n | photograph | sources | shadows | 1 - ratio | reference's | RMSE to reference "

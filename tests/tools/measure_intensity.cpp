@@ -3,8 +3,8 @@
 // Usage: measure_intensity LIT_SCENE [ROWS]
 //
 // Four data sets: 50 sources, chosen at random, at each of four vertices of the scene that get much
-// light and lie far apart; the transfers are scaled so that together they are the vertex's light, as
-// the paper's 50 patches were all there was. For each set size and each number of hidden patches,
+// light and lie far apart; the transfers are scaled so that together they are 70 % of the vertex's
+// light, as the source set's are of all power. For each set size and each number of hidden patches,
 // 10,000 choices of the hidden ones.
 #include <algorithm>
 #include <array>
@@ -28,6 +28,8 @@ namespace {
 
 constexpr std::size_t kSources = 50;
 constexpr int kTrials = 10'000;
+/// Of a vertex's light.
+constexpr double kShare = 0.7;
 
 struct DataSet {
   glm::dvec3 light{0.0};
@@ -76,7 +78,7 @@ std::vector<DataSet> data_sets(const pipeline::LitScene& scene) {
     for (const glm::vec3& transfer : given) sum += glm::dvec3(transfer);
     DataSet set{glm::dvec3(light[v]), {}};
     for (const glm::vec3& transfer : given)
-      set.transfers.push_back(glm::vec3(glm::dvec3(transfer) * set.light / sum));
+      set.transfers.push_back(glm::vec3(glm::dvec3(transfer) * set.light * (kShare / sum)));
     std::stable_sort(set.transfers.begin(), set.transfers.end(),
                      [](const glm::vec3& a, const glm::vec3& b) {
                        return pipeline::luminance(a) > pipeline::luminance(b);
