@@ -24,7 +24,8 @@ double milliseconds(const std::string& text) {
   }
   const std::string unit = text.substr(end);
   if (unit == "s") value *= 1000.0;
-  if (end == 0 || (unit != "" && unit != "ms" && unit != "s") || !(value >= 0.1 && value <= 60'000.0))
+  if (end == 0 || (unit != "" && unit != "ms" && unit != "s") ||
+      !(value >= 0.1 && value <= 60'000.0))
     throw ar::InputError("--budget: '" + text + "' is no time from 0.1ms to 60s, such as 16ms");
   return value;
 }
@@ -34,8 +35,7 @@ void run(ArArguments& arguments) {
   if (inputs != 1)
     throw ar::InputError("ar: exactly one of --image, --video and --camera is needed");
   arguments.session.differential = arguments.method == "differential";
-  if (!arguments.session.differential)
-    arguments.session.method = counting_named(arguments.method);
+  if (!arguments.session.differential) arguments.session.method = counting_named(arguments.method);
   if (arguments.passes > 0) arguments.session.passes = arguments.passes;
   if (!arguments.budget.empty()) arguments.session.budget_ms = milliseconds(arguments.budget);
   arguments.session.still = !arguments.image.empty();
@@ -67,10 +67,11 @@ void add_ar(CLI::App& program) {
       "--json", arguments->as_json,
       "One line of JSON: tags, poses, passes, milliseconds a stage (video: a line a frame)");
   command
-      ->add_option("--method", arguments->method,
-                   "How shadows are found (default: the scene's). By volumes: zpass is Haller's and "
-                   "wrong where the camera stands in a shadow; auto takes zfail there. differential: "
-                   "soft shadows from the real scene's own light (gnomon capture)")
+      ->add_option(
+          "--method", arguments->method,
+          "How shadows are found (default: the scene's). By volumes: zpass is Haller's and "
+          "wrong where the camera stands in a shadow; auto takes zfail there. differential: "
+          "soft shadows from the real scene's own light (gnomon capture)")
       ->check(CLI::IsMember({"zpass", "zfail", "auto", "differential"}));
   command->add_option("--lit-scene", arguments->session.lit_scene,
                       "What gnomon capture wrote, for differential shadows (default: the scene's)");

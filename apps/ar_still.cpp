@@ -60,16 +60,16 @@ void run_still(const ArArguments& arguments) {
 
   if (arguments.as_json) {
     json line = {{"image", arguments.image.string()},
-                       {"tags", detections_json(result.track)},
-                       {"poses", poses_json(result)},
-                       {"left_out", result.left_out},
-                       {"view", {session.view().width(), session.view().height()}},
-                       {"passes", passes_json(augmented)},
-                       {"pixels",
-                        {{"shadow", count_set(augmented.shadow_mask)},
-                         {"shadow_on_virtual", count_set(augmented.shadow_on_virtual)},
-                         {"object", count_set(augmented.object_mask)}}},
-                       {"ms", stages_json(result)}};
+                 {"tags", detections_json(result.track)},
+                 {"poses", poses_json(result)},
+                 {"left_out", result.left_out},
+                 {"view", {session.view().width(), session.view().height()}},
+                 {"passes", passes_json(augmented)},
+                 {"pixels",
+                  {{"shadow", count_set(augmented.shadow_mask)},
+                   {"shadow_on_virtual", count_set(augmented.shadow_on_virtual)},
+                   {"object", count_set(augmented.object_mask)}}},
+                 {"ms", stages_json(result)}};
     if (result.differential) line["differential"] = differential_json(*result.differential);
     // A file's name is bytes; those that are no UTF-8 are replaced.
     std::cout << line.dump(-1, ' ', false, json::error_handler_t::replace) << '\n';
@@ -86,9 +86,9 @@ void run_still(const ArArguments& arguments) {
     std::cout << fmt::format(
         "{} shadows for {} sources whose light may be hidden from {} patches{}\n", d->shadows,
         d->occluded_sources, d->receivers,
-        d->left_out > 0 ? fmt::format("; {} left out: an object is around them or too near",
-                                      d->left_out)
-                        : "");
+        d->left_out > 0
+            ? fmt::format("; {} left out: an object is around them or too near", d->left_out)
+            : "");
   std::cout << "wrote " << (arguments.out / "composite.png").string() << " and its masks\n";
 }
 

@@ -32,8 +32,8 @@ struct Options {
 void check_output(const ar::CaptureFile& capture, const fs::path& out) {
   // Nothing is left behind; a folder that cannot be written is known before the work.
   const ar::PendingFile probe(out);
-  for (const fs::path& input :
-       {capture.file, capture.camera, capture.photograph, capture.photograph_brackets, capture.model})
+  for (const fs::path& input : {capture.file, capture.camera, capture.photograph,
+                                capture.photograph_brackets, capture.model})
     refuse_to_replace(input, out);
 }
 
@@ -60,9 +60,8 @@ void print_text(const Options& options, const ar::SceneLight& light) {
   std::cout << fmt::format(
       "{}: {} patches of {} surfaces: {} from the photograph, {} from the probe, {} filled; {} "
       "shine\n",
-      options.folder.string(), light.scene.model.patches.size(),
-      light.scene.model.surfaces.size(), light.from_photograph, light.from_probe, light.filled,
-      light.emitting);
+      options.folder.string(), light.scene.model.patches.size(), light.scene.model.surfaces.size(),
+      light.from_photograph, light.from_probe, light.filled, light.emitting);
   std::cout << fmt::format("photograph / probe where both see: {:.3f} {:.3f} {:.3f}\n", ratio.x,
                            ratio.y, ratio.z);
   std::cout << fmt::format("wrote {} ({:.1f} s)\n", options.out.string(), ms / 1000.0);
@@ -94,9 +93,12 @@ void add_capture(CLI::App& program) {
   command->add_option("folder", options->folder, "Folder with a capture.toml (docs/capture.md)")
       ->required();
   command->add_option("--out", options->out, "Lit scene file to write")->required();
-  command->add_option("--patches", options->light.patches, "Instead of the file's number of patches")
+  command
+      ->add_option("--patches", options->light.patches, "Instead of the file's number of patches")
       ->check(CLI::Range(1, static_cast<int>(pipeline::PatchExchange::kMostPatches)));
-  command->add_option("--samples", options->light.samples, "Cells a side that a probe's pixel is cut in")
+  command
+      ->add_option("--samples", options->light.samples,
+                   "Cells a side that a probe's pixel is cut in")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   command

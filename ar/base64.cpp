@@ -63,7 +63,8 @@ std::string base64_from_integers(std::span<const std::uint32_t> values) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(4 * values.size());
   for (const std::uint32_t value : values)
-    for (const int shift : {0, 8, 16, 24}) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+    for (const int shift : {0, 8, 16, 24})
+      bytes.push_back(static_cast<std::uint8_t>(value >> shift));
   return encode(bytes);
 }
 

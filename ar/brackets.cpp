@@ -62,9 +62,10 @@ double mean_value(const Image& picture) {
 
 void check_light(const Brackets& brackets) {
   const auto all = [&](auto bad) {
-    return std::all_of(brackets.exposures.begin(), brackets.exposures.end(), [&](const Exposure& e) {
-      return std::all_of(e.picture.pixels.begin(), e.picture.pixels.end(), bad);
-    });
+    return std::all_of(brackets.exposures.begin(), brackets.exposures.end(),
+                       [&](const Exposure& e) {
+                         return std::all_of(e.picture.pixels.begin(), e.picture.pixels.end(), bad);
+                       });
   };
   const std::string list = brackets.list.string();
   if (all([](std::uint8_t v) { return v == 0; }))

@@ -21,7 +21,8 @@ constexpr std::uint64_t kMaxCaptureBytes = 1 << 20;
 constexpr double kLongestTimeS = 1e6;
 
 /// A pose as the capture set's JSON files have it: world_from_camera_opencv, four rows.
-glm::dmat4 read_pose_node(const fs::path& file, const YAML::Node& parent, const std::string& place) {
+glm::dmat4 read_pose_node(const fs::path& file, const YAML::Node& parent,
+                          const std::string& place) {
   constexpr const char* kKey = "world_from_camera_opencv";
   const YAML::Node rows = parent[kKey];
   const std::string key = place + kKey;
@@ -42,7 +43,8 @@ glm::dmat4 read_pose_node(const fs::path& file, const YAML::Node& parent, const 
 /// The pose under pose_file, or under world_from_camera (with axes), or from eye_m and target_m.
 glm::dmat4 read_camera_pose(const TomlTable& t) {
   const bool looks = t.has("eye_m") || t.has("target_m") || t.has("up");
-  const int ways = (t.has("pose_file") ? 1 : 0) + (t.has("world_from_camera") ? 1 : 0) + (looks ? 1 : 0);
+  const int ways =
+      (t.has("pose_file") ? 1 : 0) + (t.has("world_from_camera") ? 1 : 0) + (looks ? 1 : 0);
   if (ways == 0) t.fail("world_from_camera", "missing: give it, pose_file, or eye_m and target_m");
   if (ways > 1)
     t.fail(t.has("pose_file") ? "pose_file" : "world_from_camera",
@@ -131,7 +133,8 @@ class Reader {
     const fs::path file = *t.file("file");
     const YAML::Node root = yaml::load(file);
     const std::vector<double> center = yaml::numbers(file, root["ball_center"], "ball_center", 3);
-    if (center.size() != 3) yaml::fail(file, root["ball_center"], "ball_center", "expected 3 numbers");
+    if (center.size() != 3)
+      yaml::fail(file, root["ball_center"], "ball_center", "expected 3 numbers");
     probe.ball.center_m = {center[0], center[1], center[2]};
     probe.ball.radius_m = yaml::number(file, root["ball_radius"], "ball_radius");
     if (!(probe.ball.radius_m >= 1e-4 && probe.ball.radius_m <= 1e3))
@@ -158,8 +161,7 @@ class Reader {
   }
 
   void read_latlong(const toml::table& table) {
-    const TomlTable t(capture_.file, table, "[probe]",
-                      {"latlong", "center_m", "towards", "scale"});
+    const TomlTable t(capture_.file, table, "[probe]", {"latlong", "center_m", "towards", "scale"});
     LatlongProbe probe;
     probe.picture = *t.file("latlong");
     probe.center_m = t.required("center_m", t.vector("center_m", -kMaxMetres, kMaxMetres));

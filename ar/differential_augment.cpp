@@ -101,16 +101,14 @@ struct DifferentialAugmenter::Impl {
       end += pass.commands.size();
       out.passes.push_back({pass.label, pass.commands.size()});
       if (!settings.steps || pass.targets.color != &color) continue;
-      raster::execute(frame, {.threads = settings.threads,
-                              .memory = &memory,
-                              .first_command = done,
-                              .commands = end});
+      raster::execute(
+          frame,
+          {.threads = settings.threads, .memory = &memory, .first_command = done, .commands = end});
       done = end;
       out.steps.push_back({pass.label, color_at_photo(view, color), depth_at_photo(view, depth),
                            stencil_at_photo(view, stencil)});
     }
-    raster::execute(
-        frame, {.threads = settings.threads, .memory = &memory, .first_command = done});
+    raster::execute(frame, {.threads = settings.threads, .memory = &memory, .first_command = done});
   }
 
   /// The drawn picture in 8 bits.
@@ -173,8 +171,8 @@ Augmented DifferentialAugmenter::augment(const Image& photograph, const pipeline
   pipeline::DifferentialOptions options = at.settings.method;
   if (at.budget) options.take.passes = at.budget->passes();
   const pipeline::Scene scene = virtual_ones(objects);
-  const raster::Frame frame = at.method->record(
-      scene, camera, picture, {&at.color, &at.depth, &at.stencil}, options);
+  const raster::Frame frame =
+      at.method->record(scene, camera, picture, {&at.color, &at.depth, &at.stencil}, options);
   if (at.settings.frame) out.frame = raster::encode_frame(frame);
   out.record_ms = watch.lap_ms();
 

@@ -28,10 +28,10 @@ pipeline::ShadowMask read_mask(const TomlTable& t) {
 }  // namespace
 
 DifferentialFile read_differential(const std::filesystem::path& file, const toml::table& table) {
-  const TomlTable t(file, table, "[differential]",
-                    {"lit_scene", "passes", "budget_ms", "precision", "mask", "map_size",
-                     "self_shadows", "power_share", "prune_share", "drop_pruned",
-                     "whole_clusters"});
+  const TomlTable t(
+      file, table, "[differential]",
+      {"lit_scene", "passes", "budget_ms", "precision", "mask", "map_size", "self_shadows",
+       "power_share", "prune_share", "drop_pruned", "whole_clusters"});
   DifferentialFile out;
   // Absent, the command line names it.
   out.lit_scene = t.file("lit_scene").value_or("");
@@ -47,10 +47,8 @@ DifferentialFile read_differential(const std::filesystem::path& file, const toml
   settings.method.mask = read_mask(t);
   if (t.has("map_size") && settings.method.mask != pipeline::ShadowMask::map)
     t.fail("map_size", "is a shadow map's: give mask = \"map\"");
-  settings.method.map_size =
-      t.integer("map_size", 8, 4096).value_or(settings.method.map_size);
-  settings.method.self_shadows =
-      t.boolean("self_shadows").value_or(settings.method.self_shadows);
+  settings.method.map_size = t.integer("map_size", 8, 4096).value_or(settings.method.map_size);
+  settings.method.self_shadows = t.boolean("self_shadows").value_or(settings.method.self_shadows);
   pipeline::LightPathOptions& light = settings.light;
   light.transfer.power_share =
       t.number("power_share", 0.0, 1.0).value_or(light.transfer.power_share);

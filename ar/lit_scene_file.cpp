@@ -80,8 +80,8 @@ class Reader {
 
  private:
   [[noreturn]] void fail(std::string_view place, std::string_view what) const {
-    throw InputError(one_line(
-        fmt::format("{}: {}{}{}", name_, place, place.empty() ? "" : ": ", what)));
+    throw InputError(
+        one_line(fmt::format("{}: {}{}{}", name_, place, place.empty() ? "" : ": ", what)));
   }
 
   const json& member(const json& object, const char* key) const {
@@ -108,7 +108,8 @@ class Reader {
     for (std::size_t i = 0; i < count; ++i)
       // NaN is within nothing.
       if (!((*values)[i] >= low && (*values)[i] <= high))
-        fail(key, fmt::format("number {} is {:g}, not within {:g} to {:g}", i, (*values)[i], low, high));
+        fail(key,
+             fmt::format("number {} is {:g}, not within {:g} to {:g}", i, (*values)[i], low, high));
     return *values;
   }
   std::vector<glm::vec3> vectors(const json& object, const char* key, std::size_t count, float low,
@@ -163,7 +164,8 @@ class Reader {
     const auto normals = vectors(object, "normals", count, -1.001f, 1.001f);
     for (std::size_t i = 0; i < count; ++i) {
       if (std::abs(glm::length(normals[i]) - 1.0f) > 1e-3f)
-        fail("normals", fmt::format("normal {} has length {:g}, not 1", i, glm::length(normals[i])));
+        fail("normals",
+             fmt::format("normal {} has length {:g}, not 1", i, glm::length(normals[i])));
       model.vertices.push_back({positions[i], normals[i]});
     }
   }
@@ -213,8 +215,7 @@ void write_lit_scene(const fs::path& file, const pipeline::LitScene& scene) {
                             {"height", probe.height},
                             {"center_m", base64_of({probe.center})},
                             {"radiance", base64_of(probe.radiance)}}}};
-  const std::string text =
-      root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+  const std::string text = root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
   if (text.size() > kMaxLitSceneBytes)
     throw InputError(fmt::format("{}: would have {} bytes, more than the {} that are read",
                                  one_line(file.string()), text.size(), kMaxLitSceneBytes));

@@ -24,10 +24,10 @@ ValueTable table_of(const std::array<double, 256>& exposure) {
   for (std::size_t v = 1; v < kSaturated; ++v) {
     // Over five values, since a measured curve's single steps are noisy.
     const std::size_t low = v < 3 ? 0 : v - 2, high = v + 2;
-    const double step =
-        (exposure[high] - exposure[low]) / static_cast<double>(high - low);
+    const double step = (exposure[high] - exposure[low]) / static_cast<double>(high - low);
     const double cut =
-        v <= kCut ? 1.0 : static_cast<double>(kSaturated - v) / static_cast<double>(kSaturated - kCut);
+        v <= kCut ? 1.0
+                  : static_cast<double>(kSaturated - v) / static_cast<double>(kSaturated - kCut);
     table.weight[v] = cut / (step * step);
   }
   return table;

@@ -21,6 +21,7 @@ struct MergedRadiance {
 /// Each exposure says exposure / time; they are averaged with the inverse of their variance, taking
 /// a pixel's value to be uncertain by the same amount everywhere: (time * slope of the response)^2.
 /// Values of 0 and of 253 and more have no part where another exposure does better.
-MergedRadiance merge_radiance(const Brackets& brackets, const ExposureCurve& curve, int threads = 0);
+MergedRadiance merge_radiance(const Brackets& brackets, const ExposureCurve& curve,
+                              int threads = 0);
 
 }  // namespace gnomon::ar

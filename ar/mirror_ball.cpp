@@ -78,10 +78,10 @@ std::optional<BallOutline> ball_outline(const MirrorBall& ball, const Lens& lens
     ++imaged;
     low = glm::min(low, *pixel);
     high = glm::max(high, *pixel);
-    inside += pixel->x >= -0.5 && pixel->y >= -0.5 && pixel->x <= width - 0.5 &&
-                      pixel->y <= height - 0.5
-                  ? 1
-                  : 0;
+    inside +=
+        pixel->x >= -0.5 && pixel->y >= -0.5 && pixel->x <= width - 0.5 && pixel->y <= height - 0.5
+            ? 1
+            : 0;
   }
   if (imaged == 0) return std::nullopt;
   BallOutline outline;

@@ -54,10 +54,9 @@ class Balance {
       if (input_.known[i]) continue;
       const SurfaceMeans& mean = means[model_.patches[i].surface];
       emits_[i] = mean.emits();
-      const glm::dvec3 light =
-          mean.emits() ? mean.radiance / mean.emitting_m2
-                       : reflectance_of(mean, model_.patches[i].surface) * irradiance[i] /
-                             std::numbers::pi;
+      const glm::dvec3 light = mean.emits() ? mean.radiance / mean.emitting_m2
+                                            : reflectance_of(mean, model_.patches[i].surface) *
+                                                  irradiance[i] / std::numbers::pi;
       radiance_[i] = glm::vec3(light);
     }
     means_ = std::move(means);
@@ -98,12 +97,11 @@ class Balance {
 
 }  // namespace
 
-Balanced balance_patches(const pipeline::PatchModel& model,
-                         const pipeline::PatchExchange& exchange, const BalanceInput& input,
-                         int threads) {
-  raster::require(input.radiance.size() == model.patches.size() &&
-                      input.known.size() == model.patches.size(),
-                  "each patch is known or not");
+Balanced balance_patches(const pipeline::PatchModel& model, const pipeline::PatchExchange& exchange,
+                         const BalanceInput& input, int threads) {
+  raster::require(
+      input.radiance.size() == model.patches.size() && input.known.size() == model.patches.size(),
+      "each patch is known or not");
   raster::require(input.surface_reflectance.size() == model.surfaces.size(),
                   "each surface has a guess of its reflectance");
   Balance balance(model, input);

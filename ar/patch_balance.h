@@ -30,8 +30,7 @@ struct Balanced {
 /// of its surface's known ones (the guess where there are none) and gives back that part of what
 /// it receives, found with all unknown patches at once; on a surface whose known patches shine, it
 /// shines as they do on average. Deterministic.
-Balanced balance_patches(const pipeline::PatchModel& model,
-                         const pipeline::PatchExchange& exchange, const BalanceInput& input,
-                         int threads);
+Balanced balance_patches(const pipeline::PatchModel& model, const pipeline::PatchExchange& exchange,
+                         const BalanceInput& input, int threads);
 
 }  // namespace gnomon::ar

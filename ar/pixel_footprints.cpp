@@ -56,9 +56,9 @@ class Cells {
           static_cast<float>(solid_angle(a->direction, b->direction, c->direction) +
                              solid_angle(a->direction, c->direction, d->direction));
       const pipeline::PatchVisibility::Hit hit = patches.trace(ray->origin, ray->direction);
-      cell.patch = hit.patch == pipeline::PatchVisibility::kNone
-                       ? kOpen
-                       : hit.front ? static_cast<std::uint32_t>(hit.patch) : kBack;
+      cell.patch = hit.patch == pipeline::PatchVisibility::kNone ? kOpen
+                   : hit.front ? static_cast<std::uint32_t>(hit.patch)
+                               : kBack;
     }
   }
 
@@ -128,7 +128,8 @@ class Gatherer {
 };
 
 void append(PixelFootprints& all, const PixelFootprints& row) {
-  for (std::size_t i = 0; i < row.size(); ++i) all.first.push_back(all.shares.size() + row.first[i + 1]);
+  for (std::size_t i = 0; i < row.size(); ++i)
+    all.first.push_back(all.shares.size() + row.first[i + 1]);
   all.shares.insert(all.shares.end(), row.shares.begin(), row.shares.end());
   all.radiance.insert(all.radiance.end(), row.radiance.begin(), row.radiance.end());
   all.solid_angle_sr.insert(all.solid_angle_sr.end(), row.solid_angle_sr.begin(),
@@ -141,7 +142,8 @@ PixelFootprints find_footprints(const FloatImage& radiance, const FootprintWindo
                                 const RayOfPlace& ray_of, const pipeline::PatchVisibility& patches,
                                 const pipeline::PatchModel& model,
                                 const FootprintOptions& options) {
-  raster::require(options.samples >= 1 && options.samples <= 16, "a pixel has 1 to 16 samples a side");
+  raster::require(options.samples >= 1 && options.samples <= 16,
+                  "a pixel has 1 to 16 samples a side");
   raster::require(window.x0 >= 0 && window.y0 >= 0 && window.x0 <= window.x1 &&
                       window.y0 <= window.y1 && window.x1 <= radiance.width &&
                       window.y1 <= radiance.height,

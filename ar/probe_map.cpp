@@ -20,8 +20,8 @@ constexpr std::int64_t kMostLatlongPixels = std::int64_t{1} << 21;
 constexpr int kPlaces = 4;
 
 glm::dvec3 value_at(const FloatImage& picture, int x, int y) {
-  const float* v = picture.at(std::clamp(x, 0, picture.width - 1),
-                              std::clamp(y, 0, picture.height - 1));
+  const float* v =
+      picture.at(std::clamp(x, 0, picture.width - 1), std::clamp(y, 0, picture.height - 1));
   return {v[0], v[1], v[2]};
 }
 
@@ -86,8 +86,7 @@ LatlongPicture::LatlongPicture(FloatImage picture, const LatlongProbe& probe)
     // Over a pole the same row goes on half a turn away.
     const int turn = y < 0 || y >= height ? width / 2 : 0;
     for (int x = -1; x <= width; ++x) {
-      const float* from =
-          picture.at((x + turn + width) % width, std::clamp(y, 0, height - 1));
+      const float* from = picture.at((x + turn + width) % width, std::clamp(y, 0, height - 1));
       std::copy(from, from + 3, bordered_.at(x + 1, y + 1));
     }
   }
@@ -97,8 +96,9 @@ Ray LatlongPicture::ray(glm::dvec2 place) const {
   const double u = (place.x - 0.5) / (bordered_.width - 2);
   const double v = (place.y - 0.5) / (bordered_.height - 2);
   const double longitude = (u - 0.5) * 2.0 * kPi, latitude = (0.5 - v) * kPi;
-  return {center_m_, (ahead_ * std::cos(longitude) + right_ * std::sin(longitude)) * std::cos(latitude) +
-                         glm::dvec3(0.0, std::sin(latitude), 0.0)};
+  return {center_m_,
+          (ahead_ * std::cos(longitude) + right_ * std::sin(longitude)) * std::cos(latitude) +
+              glm::dvec3(0.0, std::sin(latitude), 0.0)};
 }
 
 glm::dvec3 LatlongPicture::seen(const glm::dvec3& direction) const {
@@ -123,8 +123,8 @@ pipeline::DirectionMap make_direction_map(
   const auto look = [&](const glm::dvec3& direction) -> std::optional<glm::dvec3> {
     const pipeline::PatchVisibility::Hit hit = patches.trace(center_m, direction);
     const bool met = hit.patch != pipeline::PatchVisibility::kNone;
-    const glm::dvec4 towards = met ? glm::dvec4(center_m + direction * hit.distance, 1.0)
-                                   : glm::dvec4(direction, 0.0);
+    const glm::dvec4 towards =
+        met ? glm::dvec4(center_m + direction * hit.distance, 1.0) : glm::dvec4(direction, 0.0);
     if (const auto value = seen(towards)) return value;
     if (met && hit.front) return glm::dvec3(patch_radiance[hit.patch]);
     return std::nullopt;
@@ -145,7 +145,8 @@ pipeline::DirectionMap make_direction_map(
               }
             }
             if (count == 0) continue;
-            const std::size_t i = y * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x);
+            const std::size_t i =
+                y * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x);
             map.radiance[i] = glm::vec3(sum / static_cast<double>(count));
             known[i] = 1;
           }

@@ -58,8 +58,8 @@ class LatlongPicture {
 };
 
 /// What is seen from the map's centre: `seen` of the place where a direction first meets the
-/// model, or of the direction itself; where that is absent, the radiance of the model's patch; where
-/// there is none either, the mean of the map's rest. Texels are means over their area.
+/// model, or of the direction itself; where that is absent, the radiance of the model's patch;
+/// where there is none either, the mean of the map's rest. Texels are means over their area.
 pipeline::DirectionMap make_direction_map(
     const glm::dvec3& center_m,
     const std::function<std::optional<glm::dvec3>(const glm::dvec4&)>& seen,

@@ -147,9 +147,10 @@ void check_times(const Brackets& set, const ExposureCurve& curve) {
   for (std::size_t k = 1; k < ratios.size(); ++k)
     if (size(k) > size(worst)) worst = k;
   if (size(worst) > std::log(kLargestTimeRatio))
-    throw InputError(fmt::format("{}: its time is given as {:g} s, but the other exposures say {:g} s",
-                                 set.exposures[worst].file.string(), set.exposures[worst].time_s,
-                                 set.exposures[worst].time_s * ratios[worst]));
+    throw InputError(
+        fmt::format("{}: its time is given as {:g} s, but the other exposures say {:g} s",
+                    set.exposures[worst].file.string(), set.exposures[worst].time_s,
+                    set.exposures[worst].time_s * ratios[worst]));
 }
 
 }  // namespace
@@ -189,9 +190,10 @@ ExposureCurve fit_response(std::span<const Brackets> sets, const ResponseFitOpti
   for (std::size_t channel = 0; channel < 3; ++channel) {
     Equations equations = gather(sets, channel, options.threads);
     if (!(equations.weight > 0.0))
-      throw InputError(fmt::format(
-          "{}: no pixel lies between black and saturation in two exposures, so they tell no response",
-          sets.front().list.string()));
+      throw InputError(
+          fmt::format("{}: no pixel lies between black and saturation in two exposures, so they "
+                      "tell no response",
+                      sets.front().list.string()));
     curve.exposure_from_value[channel] = finished(solve(equations, options.smoothness));
   }
   for (const Brackets& set : sets) check_times(set, curve);

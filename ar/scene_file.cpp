@@ -9,10 +9,10 @@
 #include <map>
 #include <set>
 
+#include "ar/differential_keys.h"
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/gltf.h"
-#include "ar/differential_keys.h"
 #include "ar/map_keys.h"
 #include "ar/model_file.h"
 #include "ar/toml_pose.h"

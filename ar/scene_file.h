@@ -74,8 +74,8 @@ struct ShadowSettings {
   bool double_shadows = false;
 };
 
-/// Soft shadows from a real scene's own light: its file (docs/capture.md; empty where the scene file
-/// does not say it), and how they are made.
+/// Soft shadows from a real scene's own light: its file (docs/capture.md; empty where the scene
+/// file does not say it), and how they are made.
 struct DifferentialFile {
   std::filesystem::path lit_scene;
   DifferentialSettings settings;

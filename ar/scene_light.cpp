@@ -163,9 +163,10 @@ class Work {
     }
     const double middle = median(std::move(differences));
     if (middle > kOtherTime)
-      throw InputError(fmt::format(
-          "{}: its values are {:.0f} (median) from what its brackets say for {:g} s: is that its time?",
-          capture_.photograph.string(), middle, time_s_));
+      throw InputError(
+          fmt::format("{}: its values are {:.0f} (median) from what its brackets say for {:g} s: "
+                      "is that its time?",
+                      capture_.photograph.string(), middle, time_s_));
   }
 
   void make_patches() {
@@ -197,8 +198,8 @@ class Work {
       window = {0, 0, latlong_->bordered().width, latlong_->bordered().height};
       ray = [this](glm::dvec2 place) { return std::optional(latlong_->ray(place)); };
       constexpr std::int64_t kMostCells = std::int64_t{1} << 22;
-      while (options.samples > 1 && std::int64_t{window.x1} * window.y1 * options.samples *
-                                            options.samples > kMostCells)
+      while (options.samples > 1 &&
+             std::int64_t{window.x1} * window.y1 * options.samples * options.samples > kMostCells)
         --options.samples;
     }
     const FloatImage& picture = latlong_ ? latlong_->bordered() : probe_picture_;
@@ -230,9 +231,8 @@ class Work {
 
   void note_probe(const PixelFootprints& pixels) {
     if (std::none_of(known_.begin(), known_.end(), [](bool k) { return k; }))
-      throw InputError(fmt::format(
-          "{}: the probe shows no front of any patch of {}", capture_.file.string(),
-          capture_.model.string()));
+      throw InputError(fmt::format("{}: the probe shows no front of any patch of {}",
+                                   capture_.file.string(), capture_.model.string()));
     const double open = pixels.open_sr / pixels.total_sr, back = pixels.back_sr / pixels.total_sr;
     if (open > 0.01)
       note(fmt::format("{}: open: {:.0f} % of what the probe sees is past it, and gives no light",
@@ -273,9 +273,10 @@ class Work {
     const LatlongProbe& probe = std::get<LatlongProbe>(capture_.probe);
     const glm::dvec3 factor = probe.scale.value_or(result_.photograph_over_probe);
     if (!(factor.x > 0.0 && factor.y > 0.0 && factor.z > 0.0))
-      throw InputError(fmt::format(
-          "{}: [probe].scale: missing, and no patch is seen by probe and photograph that would tell it",
-          capture_.file.string()));
+      throw InputError(
+          fmt::format("{}: [probe].scale: missing, and no patch is seen by probe and photograph "
+                      "that would tell it",
+                      capture_.file.string()));
     for (glm::dvec3& radiance : radiance_) radiance *= factor;
     scale(latlong_->bordered(), factor);
   }
@@ -283,12 +284,12 @@ class Work {
   void balance() {
     const pipeline::PatchExchange exchange(model(), *visibility_, options_.visibility_samples,
                                            options_.threads);
-    Balanced balanced = balance_patches(model(), exchange,
-                                        {radiance_, known_, surface_reflectance_}, options_.threads);
+    Balanced balanced = balance_patches(
+        model(), exchange, {radiance_, known_, surface_reflectance_}, options_.threads);
     result_.scene.radiance = std::move(balanced.radiance);
     result_.scene.reflectance = std::move(balanced.reflectance);
-    result_.emitting = static_cast<std::size_t>(
-        std::count(balanced.emits.begin(), balanced.emits.end(), true));
+    result_.emitting =
+        static_cast<std::size_t>(std::count(balanced.emits.begin(), balanced.emits.end(), true));
   }
 
   void make_map() {
@@ -299,8 +300,8 @@ class Work {
     };
     const glm::dvec3 center =
         ball_ ? ball_->ball.center_m : std::get<LatlongProbe>(capture_.probe).center_m;
-    result_.scene.probe = make_direction_map(center, seen, result_.scene.radiance, *visibility_,
-                                             options_.threads);
+    result_.scene.probe =
+        make_direction_map(center, seen, result_.scene.radiance, *visibility_, options_.threads);
   }
 
   const CaptureFile& capture_;

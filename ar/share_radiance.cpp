@@ -46,8 +46,8 @@ SharedRadiance share_radiance(const PixelFootprints& pixels, std::size_t patches
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       glm::dvec3 explained(0.0);
       for (std::size_t k = pixels.first[i]; k < pixels.first[i + 1]; ++k)
-        explained += static_cast<double>(pixels.shares[k].share) *
-                     shared.radiance[pixels.shares[k].patch];
+        explained +=
+            static_cast<double>(pixels.shares[k].share) * shared.radiance[pixels.shares[k].patch];
       const glm::dvec3 missing = ratio(pixels.radiance[i], explained);
       for (std::size_t k = pixels.first[i]; k < pixels.first[i + 1]; ++k)
         factors[pixels.shares[k].patch] +=

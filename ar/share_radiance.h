@@ -23,8 +23,8 @@ struct SharedRadiance {
 /// it loses half its light to the patches around it, whose means gain it. Pixels are therefore
 /// shared by what their patches are found to give: from the means on, each patch is multiplied
 /// `rounds` times by the mean of measured / explained over its pixels (Richardson 1972, Lucy 1974).
-/// Holds after each round: the pixels' explained light adds up to the measured, nothing is negative.
-/// 0 rounds: the means weighted by solid angle. Deterministic.
+/// Holds after each round: the pixels' explained light adds up to the measured, nothing is
+/// negative. 0 rounds: the means weighted by solid angle. Deterministic.
 SharedRadiance share_radiance(const PixelFootprints& pixels, std::size_t patches, int rounds);
 
 }  // namespace gnomon::ar

@@ -102,11 +102,10 @@ struct DifferentialReference::World {
   /// The share of the patch's points that only virtual objects hide.
   double hidden_share(const Patch& patch, const glm::dvec3& point, const glm::dvec3& normal,
                       int samples) const {
-    return patches.share_of_samples(patch, point, normal, samples,
-                                    [&](const glm::dvec3& from, const glm::dvec3& to) {
-                                      return objects.blocked(from, glm::vec4(glm::vec3(to), 1.0f)) &&
-                                             patches.sees(from, to);
-                                    });
+    return patches.share_of_samples(
+        patch, point, normal, samples, [&](const glm::dvec3& from, const glm::dvec3& to) {
+          return objects.blocked(from, glm::vec4(glm::vec3(to), 1.0f)) && patches.sees(from, to);
+        });
   }
 
   /// Irradiance over pi on a virtual object, of all that nothing hides.
@@ -149,8 +148,8 @@ ReferencePicture DifferentialReference::render(std::span<const Ray> rays,
     const Ray& ray = rays[i];
     const PatchVisibility::Hit patch_hit = world.patches.trace(ray.origin, ray.direction);
     const RayHit object_hit = world.objects.trace(ray);
-    if (object_hit.hit && !(patch_hit.patch != PatchVisibility::kNone &&
-                            patch_hit.distance < object_hit.distance)) {
+    if (object_hit.hit &&
+        !(patch_hit.patch != PatchVisibility::kNone && patch_hit.distance < object_hit.distance)) {
       picture.object[i] = 1;
       set(i, world.diffuse[object_hit.object] *
                  world.arriving(object_hit.point, object_hit.normal, options.object_samples));

@@ -39,7 +39,8 @@ class DifferentialReference {
   DifferentialReference(const LitScene& scene, const Scene& virtual_scene);
   ~DifferentialReference();
 
-  /// One ray a pixel, with the photograph's three bytes of it. A ray that meets nothing keeps its pixel.
+  /// One ray a pixel, with the photograph's three bytes of it. A ray that meets nothing keeps its
+  /// pixel.
   ReferencePicture render(std::span<const Ray> rays, std::span<const std::uint8_t> photograph,
                           const ReferenceOptions& options) const;
 

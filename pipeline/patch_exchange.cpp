@@ -29,8 +29,7 @@ PatchExchange::PatchExchange(const PatchModel& model, const PatchVisibility& vis
             const double factor = form_factor(to.center, to.normal, triangles[j]);
             if (!(factor > 0.0)) continue;
             factors_[i * patches_ + j] = static_cast<float>(
-                factor *
-                visibility.visible_share(model.patches[j], to.center, to.normal, samples));
+                factor * visibility.visible_share(model.patches[j], to.center, to.normal, samples));
           }
         }
       });

@@ -30,13 +30,17 @@ TEST_F(Capture, WritesALitSceneThatReadsBack) {
 
 TEST_F(Capture, SaysWhatIsWrongInOneLineAndWritesNothing) {
   const std::string out = file("soft.lit");
-  expect_one_line_error(run({"capture", file("none"), "--out", out}), "none: no folder of this name");
-  expect_one_line_error(run({"capture", kSoft, "--out", file("no/such/folder/a.lit")}), "no folder");
+  expect_one_line_error(run({"capture", file("none"), "--out", out}),
+                        "none: no folder of this name");
+  expect_one_line_error(run({"capture", kSoft, "--out", file("no/such/folder/a.lit")}),
+                        "no folder");
   fs::create_directories(file("bad"));
   std::ofstream(file("bad/capture.toml")) << "format = \"gnomon-capture 1\"\nphoto = 1\n";
-  expect_one_line_error(run({"capture", file("bad"), "--out", out}), "capture.toml:2: photo: unknown key");
+  expect_one_line_error(run({"capture", file("bad"), "--out", out}),
+                        "capture.toml:2: photo: unknown key");
   EXPECT_FALSE(fs::exists(out));
-  expect_one_line_error(run({"capture", file("bad"), "--out", file("bad/capture.toml")}), "unknown key");
+  expect_one_line_error(run({"capture", file("bad"), "--out", file("bad/capture.toml")}),
+                        "unknown key");
 }
 
 TEST_F(Capture, DoesNotReplaceItsInputs) {
@@ -47,8 +51,10 @@ TEST_F(Capture, DoesNotReplaceItsInputs) {
 }
 
 TEST_F(Capture, MisuseOfOptionsIsNamed) {
-  for (const auto& [option, value] : {std::pair{"--patches", "0"}, {"--samples", "17"},
-                                      {"--visibility-samples", "3"}, {"--threads", "-1"}}) {
+  for (const auto& [option, value] : {std::pair{"--patches", "0"},
+                                      {"--samples", "17"},
+                                      {"--visibility-samples", "3"},
+                                      {"--threads", "-1"}}) {
     const Outcome got = run({"capture", kSoft, "--out", file("a.lit"), option, value});
     EXPECT_EQ(got.status, 1);
     EXPECT_THAT(got.err, HasSubstr(option));

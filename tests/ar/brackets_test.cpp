@@ -83,8 +83,9 @@ TEST_F(BracketsOfFiles, RefuseTimesThatAreNone) {
 TEST_F(BracketsOfFiles, RefuseTimesThatDisagreeWithThePictures) {
   picture("a.png", 50);
   picture("b.png", 100);
-  EXPECT_THAT(error_of(two("1", "0.5")),
-              HasSubstr("a.png: 1 s, but darker (mean value 50.0) than a shorter exposure (100.0)"));
+  EXPECT_THAT(
+      error_of(two("1", "0.5")),
+      HasSubstr("a.png: 1 s, but darker (mean value 50.0) than a shorter exposure (100.0)"));
 }
 
 TEST_F(BracketsOfFiles, RefusePicturesThatSayNothing) {

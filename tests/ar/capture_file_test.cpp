@@ -63,21 +63,26 @@ TEST_F(Capture, ReadsABallWithItsKeys) {
   const CaptureFile colored = read(kHead + kPhotograph + "exposure_time_s = 0.25\n" +
                                    "[probe]\nbrackets = \"list.json\"\ncenter_m = [0, 0.5, 0]\n"
                                    "radius_m = 0.05\nreflectance = [0.9, 0.8, 0.7]\n"
-                                   "eye_m = [0, 0.5, 1]\ntarget_m = [0, 0.5, 0]\n" + kModel);
+                                   "eye_m = [0, 0.5, 1]\ntarget_m = [0, 0.5, 0]\n" +
+                                   kModel);
   EXPECT_EQ(std::get<BallProbe>(colored.probe).ball.reflectance, glm::dvec3(0.9, 0.8, 0.7));
   EXPECT_EQ(colored.exposure_time_s, 0.25);
   EXPECT_EQ(colored.patches, 1500);
 }
 
 TEST_F(Capture, ReadsABallAndPosesOfTheCaptureSetsForm) {
-  const std::string pose = "\"world_from_camera_opencv\": [[1,0,0,0],[0,1,0,0],[0,0,1,-1],[0,0,0,1]]";
+  const std::string pose =
+      "\"world_from_camera_opencv\": [[1,0,0,0],[0,1,0,0],[0,0,1,-1],[0,0,0,1]]";
   write("pose.json", "{" + pose + "}");
-  write("ball.json", "{\"ball_center\": [0, 0, 0], \"ball_radius\": 0.1, \"ball_reflectance\": 0.92, "
-                     "\"camera\": {" + pose + "}}");
-  const CaptureFile c =
-      read(kHead + "[photograph]\nfile = \"photo.png\"\nbrackets = \"list.json\"\n"
-                   "pose_file = \"pose.json\"\n[probe]\nbrackets = \"list.json\"\n"
-                   "file = \"ball.json\"\n" + kModel);
+  write("ball.json",
+        "{\"ball_center\": [0, 0, 0], \"ball_radius\": 0.1, \"ball_reflectance\": 0.92, "
+        "\"camera\": {" +
+            pose + "}}");
+  const CaptureFile c = read(kHead +
+                             "[photograph]\nfile = \"photo.png\"\nbrackets = \"list.json\"\n"
+                             "pose_file = \"pose.json\"\n[probe]\nbrackets = \"list.json\"\n"
+                             "file = \"ball.json\"\n" +
+                             kModel);
   EXPECT_EQ(c.world_from_camera[3].z, -1.0);
   EXPECT_EQ(std::get<BallProbe>(c.probe).ball.reflectance.y, 0.92);
 }
@@ -85,7 +90,8 @@ TEST_F(Capture, ReadsABallAndPosesOfTheCaptureSetsForm) {
 TEST_F(Capture, ReadsALatlongPicture) {
   const CaptureFile c = read(kHead + kPhotograph +
                              "[probe]\nlatlong = \"probe.hdr\"\ncenter_m = [0, 1, 0]\n"
-                             "towards = [2, 0, 0]\nscale = [1, 2, 3]\n" + kModel);
+                             "towards = [2, 0, 0]\nscale = [1, 2, 3]\n" +
+                             kModel);
   const auto& probe = std::get<LatlongProbe>(c.probe);
   EXPECT_EQ(probe.towards, glm::dvec3(1, 0, 0));
   EXPECT_EQ(probe.scale, glm::dvec3(1, 2, 3));
@@ -109,15 +115,19 @@ TEST_F(Capture, NamesFileLineAndKeyOfWhatIsWrong) {
 }
 
 TEST_F(Capture, RefusesPosesThatAreNoneOrTwo) {
-  const std::string start = kHead + "[photograph]\nfile = \"photo.png\"\nbrackets = \"list.json\"\n";
-  EXPECT_THAT(error_of(start + kBall + kModel), HasSubstr("[photograph].world_from_camera: missing"));
+  const std::string start =
+      kHead + "[photograph]\nfile = \"photo.png\"\nbrackets = \"list.json\"\n";
+  EXPECT_THAT(error_of(start + kBall + kModel),
+              HasSubstr("[photograph].world_from_camera: missing"));
   EXPECT_THAT(error_of(start + "pose_file = \"list.json\"\neye_m = [0, 0, 0]\n" + kBall + kModel),
               HasSubstr("more than one pose"));
-  EXPECT_THAT(error_of(start + "axes = \"opengl\"\neye_m = [0, 0, 0]\ntarget_m = [1, 0, 0]\n" + kBall + kModel),
+  EXPECT_THAT(error_of(start + "axes = \"opengl\"\neye_m = [0, 0, 0]\ntarget_m = [1, 0, 0]\n" +
+                       kBall + kModel),
               HasSubstr("axes: without world_from_camera"));
   write("pose.json", "{\"world_from_camera_opencv\": [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}");
-  EXPECT_THAT(error_of(start + "pose_file = \"pose.json\"\n" + kBall + kModel),
-              HasSubstr("pose.json:1: world_from_camera_opencv: is not a rotation and translation"));
+  EXPECT_THAT(
+      error_of(start + "pose_file = \"pose.json\"\n" + kBall + kModel),
+      HasSubstr("pose.json:1: world_from_camera_opencv: is not a rotation and translation"));
   write("pose.json", "{\"world_from_camera_opencv\": [[1,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}");
   EXPECT_THAT(error_of(start + "pose_file = \"pose.json\"\n" + kBall + kModel),
               HasSubstr("expected 4 rows of 4 numbers"));
@@ -125,8 +135,10 @@ TEST_F(Capture, RefusesPosesThatAreNoneOrTwo) {
 
 TEST_F(Capture, RefusesABallThatIsNone) {
   const auto ball = [&](const std::string& keys) {
-    return error_of(kHead + kPhotograph + "[probe]\nbrackets = \"list.json\"\neye_m = [0, 0.5, 1]\n"
-                    "target_m = [0, 0.5, 0]\n" + keys + kModel);
+    return error_of(kHead + kPhotograph +
+                    "[probe]\nbrackets = \"list.json\"\neye_m = [0, 0.5, 1]\n"
+                    "target_m = [0, 0.5, 0]\n" +
+                    keys + kModel);
   };
   EXPECT_THAT(ball("center_m = [0, 0.5, 0]\nradius_m = 2\nreflectance = 1\n"),
               HasSubstr("inside of its radius 2 m"));
@@ -141,8 +153,10 @@ TEST_F(Capture, RefusesABallThatIsNone) {
   EXPECT_THAT(ball("radius_m = 0.1\nreflectance = 1\n"), HasSubstr("[probe].center_m: missing"));
   EXPECT_THAT(error_of(kHead + kPhotograph + "[probe]\nlatlong = \"probe.hdr\"\n" + kModel),
               HasSubstr("[probe].center_m: missing"));
-  EXPECT_THAT(error_of(kHead + kPhotograph + "[probe]\nlatlong = \"probe.hdr\"\ncenter_m = [0, 0, 0]\n"
-                       "towards = [0, 1, 0]\n" + kModel),
+  EXPECT_THAT(error_of(kHead + kPhotograph +
+                       "[probe]\nlatlong = \"probe.hdr\"\ncenter_m = [0, 0, 0]\n"
+                       "towards = [0, 1, 0]\n" +
+                       kModel),
               HasSubstr("towards: is not horizontal"));
 }
 

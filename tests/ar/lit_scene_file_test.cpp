@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "../pipeline/patch_rooms.h"
 #include "ar/base64.h"
 #include "ar/error.h"
-#include "../pipeline/patch_rooms.h"
 #include "temporary_folder.h"
 
 namespace gnomon::ar {
@@ -33,7 +33,8 @@ pipeline::LitScene small_scene() {
   scene.probe.width = 4;
   scene.probe.height = 2;
   scene.probe.center = {0.1f, -0.2f, 0.3f};
-  for (int i = 0; i < 8; ++i) scene.probe.radiance.emplace_back(1e-20f, 1e20f, 0.1f * static_cast<float>(i));
+  for (int i = 0; i < 8; ++i)
+    scene.probe.radiance.emplace_back(1e-20f, 1e20f, 0.1f * static_cast<float>(i));
   return scene;
 }
 
@@ -161,7 +162,8 @@ TEST_F(LitSceneFile, RefusesIndicesWithoutATargetAndPatchesWithoutArea) {
 TEST(Base64, HasTheVectorsOfItsRfc) {
   // "foob" and "foobar" + "ba" as numbers of four bytes.
   EXPECT_EQ(base64_from_integers(std::vector<std::uint32_t>{0x626f6f66u}), "Zm9vYg==");
-  EXPECT_EQ(base64_from_integers(std::vector<std::uint32_t>{0x626f6f66u, 0x61627261u}), "Zm9vYmFyYmE=");
+  EXPECT_EQ(base64_from_integers(std::vector<std::uint32_t>{0x626f6f66u, 0x61627261u}),
+            "Zm9vYmFyYmE=");
   EXPECT_EQ(base64_from_floats({}), "");
   EXPECT_EQ(integers_from_base64("Zm9vYmFyYmE="),
             (std::vector<std::uint32_t>{0x626f6f66u, 0x61627261u}));

@@ -25,9 +25,10 @@ TEST(MergeRadiance, GivesBackWhatTheBracketsWereMadeOf) {
   EXPECT_EQ(merged.saturated, 0u);
   for (int i = 0; i < 1000; ++i)
     for (int c = 0; c < 3; ++c) {
-      const double got = static_cast<double>(merged.picture.pixels[static_cast<std::size_t>(3 * i + c)]);
-      // Values are rounded: half a step where the longest exposure that is not saturated is over 100,
-      // and the darkest pixels reach 50.
+      const double got =
+          static_cast<double>(merged.picture.pixels[static_cast<std::size_t>(3 * i + c)]);
+      // Values are rounded: half a step where the longest exposure that is not saturated is over
+      // 100, and the darkest pixels reach 50.
       EXPECT_NEAR(got / radiance(i, c), 1.0, 0.02) << i;
     }
 }

@@ -24,8 +24,8 @@ class LitRoom : public testing::Test {
     for (int bounce = 0; bounce < 60; ++bounce) {
       const auto light = exchange_->irradiance(radiance_, 0);
       for (std::size_t i = 0; i < radiance_.size(); ++i)
-        radiance_[i] = is_lamp(i) ? glm::vec3(20.0f)
-                                  : glm::vec3(kReflectance * light[i] / std::numbers::pi);
+        radiance_[i] =
+            is_lamp(i) ? glm::vec3(20.0f) : glm::vec3(kReflectance * light[i] / std::numbers::pi);
     }
   }
   bool is_lamp(std::size_t i) const { return model_.surfaces[model_.patches[i].surface] == "lamp"; }

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
+#include "../pipeline/patch_rooms.h"
 #include "ar/capture_file.h"
 #include "ar/probe_map.h"
 #include "ar/share_radiance.h"
-#include "../pipeline/patch_rooms.h"
 
 namespace gnomon::ar {
 namespace {
@@ -54,8 +54,8 @@ TEST(PixelFootprints, APixelIsSharedByItsNeighbourhoodOfATent) {
 }
 
 TEST(PixelFootprints, SolidAnglesOfAMirrorBallsRaysAreThoseOfItsPicture) {
-  // From far away, the share sin^2 of a ball's disc mirrors the cone of twice the angle: of a sphere's
-  // 4 pi steradians the part of the disc's area.
+  // From far away, the share sin^2 of a ball's disc mirrors the cone of twice the angle: of a
+  // sphere's 4 pi steradians the part of the disc's area.
   const pipeline::PatchModel model = pipeline::make_patches(cube_room(), 50);
   const pipeline::PatchVisibility visibility(model);
   const MirrorBall ball{{0, 0, 0}, 1e-3, glm::dvec3(1.0)};
@@ -109,8 +109,10 @@ TEST(PixelFootprints, ALatlongPictureCoversTheSphere) {
 
 TEST(LatlongPicture, LooksAheadInItsMiddleAndRightInItsRightHalf) {
   FloatImage picture = constant(64, 32, 0.0f);
-  picture.at(31, 15)[0] = picture.at(32, 15)[0] = picture.at(31, 16)[0] = picture.at(32, 16)[0] = 1.0f;
-  picture.at(48, 16)[1] = picture.at(47, 16)[1] = picture.at(48, 15)[1] = picture.at(47, 15)[1] = 1.0f;
+  picture.at(31, 15)[0] = picture.at(32, 15)[0] = picture.at(31, 16)[0] = picture.at(32, 16)[0] =
+      1.0f;
+  picture.at(48, 16)[1] = picture.at(47, 16)[1] = picture.at(48, 15)[1] = picture.at(47, 15)[1] =
+      1.0f;
   LatlongProbe probe;  // Towards -z, as a camera at rest looks: right is +x.
   const LatlongPicture latlong(picture, probe);
   EXPECT_NEAR(latlong.seen({0, 0, -1}).x, 1.0, 1e-6);

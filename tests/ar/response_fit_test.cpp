@@ -26,8 +26,8 @@ double largest_error(const std::array<double, 256>& curve, const ResponseFunctio
   const double unit = inverse(128.0 / 255.0) / curve[128];
   double largest = 0.0;
   for (int v = low; v <= high; ++v)
-    largest = std::max(
-        largest, std::abs(255.0 * response(unit * curve[static_cast<std::size_t>(v)]) - v));
+    largest = std::max(largest,
+                       std::abs(255.0 * response(unit * curve[static_cast<std::size_t>(v)]) - v));
   return largest;
 }
 
@@ -37,14 +37,15 @@ TEST(ResponseFit, FindsAGammaCurveFromCleanBrackets) {
       synthetic_brackets(64, 64, stops(8, 0.005, 2.0), radiance, gamma_response)};
   const ExposureCurve curve = fit_response(sets);
   for (const auto& channel : curve.exposure_from_value)
-    EXPECT_LT(largest_error(channel, gamma_response, [](double f) { return std::pow(f, 2.2); }, 4, 252),
+    EXPECT_LT(largest_error(
+                  channel, gamma_response, [](double f) { return std::pow(f, 2.2); }, 4, 252),
               1.0);
 }
 
 TEST(ResponseFit, RisesStrictlyFromNothingToOne) {
   const auto radiance = [](int i, int c) { return ramp_radiance(i, 500, c); };
-  const std::vector<Brackets> sets{synthetic_brackets(25, 20, stops(4, 0.01, 3.0), radiance,
-                                                      shoulder_response, 0.02)};
+  const std::vector<Brackets> sets{
+      synthetic_brackets(25, 20, stops(4, 0.01, 3.0), radiance, shoulder_response, 0.02)};
   const ExposureCurve curve = fit_response(sets);
   for (const auto& channel : curve.exposure_from_value) {
     EXPECT_EQ(channel[0], 0.0);
@@ -61,16 +62,14 @@ TEST(ResponseFit, JoinsSetsOfDifferentScenes) {
       synthetic_brackets(20, 20, stops(3, 0.05, 2.0), dark, shoulder_response),
       synthetic_brackets(20, 20, stops(4, 0.05, 1.6), bright, shoulder_response)};
   const ExposureCurve curve = fit_response(sets);
-  const auto inverse = [](double f) {
-    return std::pow(f / (1.42 - 0.42 * f), 1.0 / 0.56);
-  };
+  const auto inverse = [](double f) { return std::pow(f / (1.42 - 0.42 * f), 1.0 / 0.56); };
   EXPECT_LT(largest_error(curve.exposure_from_value[1], shoulder_response, inverse, 60, 240), 1.5);
 }
 
 TEST(ResponseFit, IsTheSameForAnyNumberOfThreads) {
   const auto radiance = [](int i, int c) { return ramp_radiance(i, 900, c); };
-  const std::vector<Brackets> sets{synthetic_brackets(31, 29, stops(5, 0.01, 2.5), radiance,
-                                                      shoulder_response, 0.01)};
+  const std::vector<Brackets> sets{
+      synthetic_brackets(31, 29, stops(5, 0.01, 2.5), radiance, shoulder_response, 0.01)};
   const ExposureCurve one = fit_response(sets, {.threads = 1});
   for (const int threads : {2, 3, 7}) EXPECT_EQ(fit_response(sets, {.threads = threads}), one);
 }
@@ -112,8 +111,10 @@ TEST(ResponseFit, FindsTheTrueCurveOfTheRenderedCapture) {
     for (std::size_t v = 8; v <= 250; ++v) {
       const double got = unit * curve.exposure_from_value[c][v];
       // Within a value and a half of the truth.
-      const double slope = (static_cast<double>(table[v + 1]) - static_cast<double>(table[v - 1])) / 2.0;
-      EXPECT_NEAR(got, static_cast<double>(table[v]), 1.5 * slope) << "channel " << c << " value " << v;
+      const double slope =
+          (static_cast<double>(table[v + 1]) - static_cast<double>(table[v - 1])) / 2.0;
+      EXPECT_NEAR(got, static_cast<double>(table[v]), 1.5 * slope)
+          << "channel " << c << " value " << v;
     }
   }
 }

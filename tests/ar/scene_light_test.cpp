@@ -57,7 +57,8 @@ TEST(SceneLight, FindsTheLampsOfTheRenderedRoom) {
       const int k = static_cast<int>(c);
       const double unit = lights[0]["radiance"][c].get<double>() / panel.radiance[k];
       const double ratio = found.radiance[k] * unit / light["radiance"][c].get<double>();
-      // The lamp is 2 or 3 pixels of the ball's picture, and a centimetre off its place in the model.
+      // The lamp is 2 or 3 pixels of the ball's picture, and a centimetre off its place in the
+      // model.
       EXPECT_NEAR(ratio, 1.0, light["name"] == "clip_lamp" ? 0.25 : 0.1)
           << light["name"] << " channel " << c;
     }
@@ -176,7 +177,8 @@ TEST_F(ChangedCapture, ANameToLeaveOutMustBeThere) {
   capture_.model = GNOMON_SOURCE_DIR "/examples/soft/virtual/box_lo.glb";
   capture_.leave_out.clear();
   capture_.leave_out.push_back("box");
-  EXPECT_THAT(error(), testing::AnyOf(HasSubstr("nothing is left of the model"), HasSubstr("no node 'box'")));
+  EXPECT_THAT(error(), testing::AnyOf(HasSubstr("nothing is left of the model"),
+                                      HasSubstr("no node 'box'")));
 }
 
 }  // namespace

@@ -44,8 +44,7 @@ struct Setting {
       const auto hit = visibility.trace(ray.origin, ray.direction);
       glm::dvec3 radiance(0.0);
       for (std::size_t k = 0; k < 3; ++k) {
-        radiance += glm::dvec3(
-                        paths.vertex_radiance[scene.model.patches[hit.patch].vertices[k]]) *
+        radiance += glm::dvec3(paths.vertex_radiance[scene.model.patches[hit.patch].vertices[k]]) *
                     hit.weights[static_cast<int>(k)];
       }
       for (std::size_t c = 0; c < 3; ++c)
@@ -151,9 +150,9 @@ TEST(Differential, IsNearTheReferenceAndNearerWithMorePasses) {
   const double nothing = rms(photograph, exact.pixels, 3, where);
   double before = nothing;
   for (const std::size_t passes : {2, 10, 600}) {
-    const double error = rms(draw(setting, ball, {.take = {.passes = passes,
-                                                           .precision = ShadowPrecision::radiance}}),
-                             exact.pixels, 3, where);
+    const double error = rms(
+        draw(setting, ball, {.take = {.passes = passes, .precision = ShadowPrecision::radiance}}),
+        exact.pixels, 3, where);
     std::printf("%zu passes: rms %.3f of %.3f\n", passes, error, nothing);
     EXPECT_LT(error, before) << passes;
     before = error;
@@ -203,7 +202,8 @@ TEST(Differential, IsTheSameForEveryNumberOfThreadsAndVectorWidth) {
   DifferentialMethod method(setting.scene, setting.paths);
   for (const ShadowPrecision precision : kPrecisions) {
     for (const ShadowMask mask : {ShadowMask::map, ShadowMask::volumes}) {
-      DifferentialOptions options{.take = {.passes = 12, .precision = precision, .threads = 1}, .mask = mask};
+      DifferentialOptions options{.take = {.passes = 12, .precision = precision, .threads = 1},
+                                  .mask = mask};
       const auto expected = draw(method, setting, ball, options, 1, raster::Isa::scalar);
       for (const raster::Isa isa : raster::available_isas()) {
         for (const int threads : {1, 2, 3, 7}) {

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <random>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "pipeline/object_light.h"
 #include "tests/pipeline/lit_room.h"

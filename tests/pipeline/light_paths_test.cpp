@@ -7,8 +7,8 @@
 #include <set>
 #include <stdexcept>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "pipeline/patch_light.h"
 #include "tests/pipeline/lit_room.h"
@@ -106,8 +106,7 @@ void expect_sound(const PatchTree& tree, const PatchModel& model,
   for (const PatchNode& node : tree.nodes) {
     for (const std::uint32_t item : tree.items(node)) {
       Bounds patch;
-      for (std::size_t k = 0; k < 3; ++k)
-        patch.add(model.corner(model.patches[patch_of(item)], k));
+      for (std::size_t k = 0; k < 3; ++k) patch.add(model.corner(model.patches[patch_of(item)], k));
       Bounds joined = node.bounds;
       joined.add(patch);
       EXPECT_EQ(joined.low, node.bounds.low);
@@ -132,11 +131,13 @@ TEST(PatchTrees, HoldEachPatchOnceInBoundsThatHoldItDownToTheirLeaves) {
   const auto all = all_patches(scene);
   const std::vector<std::uint32_t> sources = find_sources(scene, 0.7);
   const PatchTree source_tree = build_source_tree(scene.model, sources);
-  expect_sound(source_tree, scene.model, [&](std::uint32_t i) { return sources[i]; }, 1);
+  expect_sound(
+      source_tree, scene.model, [&](std::uint32_t i) { return sources[i]; }, 1);
   EXPECT_EQ(source_tree.nodes.size(), 2 * sources.size() - 1);
   for (const std::size_t leaf : {std::size_t{1}, std::size_t{8}, std::size_t{50}}) {
-    expect_sound(build_receiver_tree(scene.model, all, leaf), scene.model,
-                 [](std::uint32_t i) { return i; }, leaf);
+    expect_sound(
+        build_receiver_tree(scene.model, all, leaf), scene.model, [](std::uint32_t i) { return i; },
+        leaf);
   }
 }
 
@@ -203,9 +204,10 @@ TEST(OccludedLight, HoldsEverySourceThatABoxHidesFromAReceiver) {
   OccludedLight occluded;
   std::size_t fewest = all.size();
   for (int trial = 0; trial < 12; ++trial) {
-    const Bounds box = box_at({test::uniform(random, -1.5f, 1.5f), test::uniform(random, 0.3f, 2.5f),
-                               test::uniform(random, -1.5f, 1.5f)},
-                              0.15);
+    const Bounds box =
+        box_at({test::uniform(random, -1.5f, 1.5f), test::uniform(random, 0.3f, 2.5f),
+                test::uniform(random, -1.5f, 1.5f)},
+               0.15);
     occluded.find(paths, std::span(&box, 1));
     std::set<std::uint32_t> found(occluded.sources().begin(), occluded.sources().end());
     std::set<std::uint32_t> receivers(occluded.receivers().begin(), occluded.receivers().end());

@@ -29,9 +29,9 @@ pipeline::Scene room_surfaces(const RoomOptions& options) {
   const glm::vec3 x(4.0f, 0.0f, 0.0f), y(0.0f, 3.0f, 0.0f), z(0.0f, 0.0f, 4.0f);
   const glm::vec3 low(-2.0f, 0.0f, -2.0f), high(2.0f, 3.0f, 2.0f);
   pipeline::Scene scene;
-  scene.objects = {rectangle("floor", low, z, x),    rectangle("ceiling", low + y, x, z),
-                   rectangle("back", low, x, y),     rectangle("front", low + z, y, x),
-                   rectangle("left", low, y, z),     rectangle("right", low + x, z, y)};
+  scene.objects = {rectangle("floor", low, z, x), rectangle("ceiling", low + y, x, z),
+                   rectangle("back", low, x, y),  rectangle("front", low + z, y, x),
+                   rectangle("left", low, y, z),  rectangle("right", low + x, z, y)};
   const float half = options.panel_half_m;
   scene.objects.push_back(rectangle(kPanel, {0.4f - half, 2.9f, -0.2f - half},
                                     {2.0f * half, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f * half}));

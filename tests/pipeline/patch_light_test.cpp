@@ -5,8 +5,8 @@
 #include <random>
 #include <stdexcept>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "tests/pipeline/lit_room.h"
 #include "tests/pipeline/test_meshes.h"

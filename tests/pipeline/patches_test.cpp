@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "tests/pipeline/lit_room.h"
 #include "tests/pipeline/test_meshes.h"

@@ -1,8 +1,8 @@
 // Differential shadows against photographs of the real thing, and against rays.
 // Usage: measure_differential LIT_SCENE CAPTURE TRUTH [OUT]   where CAPTURE has background.png,
 // camera.yml and camera_pose.json, TRUTH a folder for each photograph with photo.png, pose.json and
-// object_mask.png; models are looked for beside CAPTURE's own. Pictures go to OUT; references that lie
-// there already (NAME_reference.png) are read and not made again.
+// object_mask.png; models are looked for beside CAPTURE's own. Pictures go to OUT; references that
+// lie there already (NAME_reference.png) are read and not made again.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -73,8 +73,10 @@ Capture read(const fs::path& lit, const fs::path& capture, const fs::path& truth
     if (entry.is_directory()) folders.insert(entry.path());
   }
   for (const fs::path& folder : folders) {
-    Truth one{folder.filename().string(), read_image_rgb(folder / "photo.png"),
-              read_image(folder / "object_mask.png"), {}};
+    Truth one{folder.filename().string(),
+              read_image_rgb(folder / "photo.png"),
+              read_image(folder / "object_mask.png"),
+              {}};
     const json pose = load(folder / "pose.json");
     for (const json& object : pose.at("objects")) {
       const std::string model = object.at("model").get<std::string>();
@@ -109,8 +111,8 @@ std::vector<std::size_t> shadow_region(const Truth& truth,
                                        const Image& background) {
   std::vector<std::size_t> region;
   for (std::size_t i = 0; i < reference.shadow.size(); ++i) {
-    const bool object = reference.object[i] ||
-                        truth.object_mask.pixels[i * truth.object_mask.channels] != 0;
+    const bool object =
+        reference.object[i] || truth.object_mask.pixels[i * truth.object_mask.channels] != 0;
     int taken = 0;
     for (std::size_t c = 0; c < 3; ++c)
       taken = std::max(taken, background.pixels[3 * i + c] - reference.pixels[3 * i + c]);
@@ -231,8 +233,9 @@ void measure(const Capture& capture, const fs::path& out) {
   std::vector<pipeline::ReferencePicture> references;
   std::vector<std::vector<std::size_t>> regions;
   fmt::print("reference and photographs (values of 255; 1 - RMSE / RMSE without a shadow)\n");
-  fmt::print("| photograph | pixels | RMSE without | reference | 1 - ratio | darker, photograph | "
-             "reference | s |\n");
+  fmt::print(
+      "| photograph | pixels | RMSE without | reference | 1 - ratio | darker, photograph | "
+      "reference | s |\n");
   for (const Truth& truth : capture.truths) {
     Stopwatch watch;
     references.push_back(reference_of(capture, truth, rays, out));
@@ -248,8 +251,9 @@ void measure(const Capture& capture, const fs::path& out) {
     std::fflush(stdout);
   }
   const Lens lens(capture.camera);
-  fmt::print("\n| n | photograph | sources | shadows | 1 - ratio | reference's | RMSE to reference "
-             "| darker | whole ms | record | execute |\n");
+  fmt::print(
+      "\n| n | photograph | sources | shadows | 1 - ratio | reference's | RMSE to reference "
+      "| darker | whole ms | record | execute |\n");
   for (const Setting& one : settings()) {
     Stopwatch watch;
     DifferentialAugmenter augmenter(lens, capture.lit, capture.world_from_camera, one.settings);
@@ -273,13 +277,13 @@ void measure(const Capture& capture, const fs::path& out) {
       double record_ms = 0.0, execute_ms = 0.0;
       const double ms = median_ms(augmenter, background, truth.scene, capture.world_from_camera,
                                   record_ms, execute_ms);
-      fmt::print("| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} | {:.1f} | {:.1f} "
-                 "|\n",
-                 one.name, truth.name, augmenter.report().occluded_sources,
-                 augmenter.report().shadows, ratio, ratio_reference,
-                 rmse(picture.composite.pixels, references[t].pixels, regions[t]),
-                 strength(background.pixels, picture.composite.pixels, regions[t]), ms, record_ms,
-                 execute_ms);
+      fmt::print(
+          "| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} | {:.1f} | {:.1f} "
+          "|\n",
+          one.name, truth.name, augmenter.report().occluded_sources, augmenter.report().shadows,
+          ratio, ratio_reference, rmse(picture.composite.pixels, references[t].pixels, regions[t]),
+          strength(background.pixels, picture.composite.pixels, regions[t]), ms, record_ms,
+          execute_ms);
       std::fflush(stdout);
       if (!out.empty()) write_png(out / (truth.name + "_" + one.name + ".png"), picture.composite);
     }

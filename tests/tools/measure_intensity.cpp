@@ -52,10 +52,11 @@ std::vector<std::uint32_t> bright_vertices(const pipeline::LitScene& scene,
   std::vector<std::uint32_t> chosen;
   for (const std::uint32_t v : order) {
     const auto far = [&](std::uint32_t other) {
-      return glm::distance(scene.model.vertices[v].position,
-                           scene.model.vertices[other].position) > 1.0f;
+      return glm::distance(scene.model.vertices[v].position, scene.model.vertices[other].position) >
+             1.0f;
     };
-    if (chosen.size() < count && std::all_of(chosen.begin(), chosen.end(), far)) chosen.push_back(v);
+    if (chosen.size() < count && std::all_of(chosen.begin(), chosen.end(), far))
+      chosen.push_back(v);
   }
   return chosen;
 }
@@ -149,8 +150,7 @@ void run(const char* file, const char* rows) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc < 2 || argc > 3)
-      throw std::runtime_error("usage: measure_intensity LIT_SCENE [ROWS]");
+    if (argc < 2 || argc > 3) throw std::runtime_error("usage: measure_intensity LIT_SCENE [ROWS]");
     gnomon::ar::run(argv[1], argc == 3 ? argv[2] : nullptr);
     return 0;
   } catch (const std::exception& error) {

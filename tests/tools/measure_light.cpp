@@ -1,6 +1,6 @@
-// Prints the tables of docs/capture.md: what gnomon capture finds, beside the truth of a capture set
-// that was rendered. Usage: measure_light CAPTURE TRUTH, where CAPTURE holds capture.toml (with a
-// mirror ball) and TRUTH response.json, lights.json, background.exr, probe/probe.exr and
+// Prints the tables of docs/capture.md: what gnomon capture finds, beside the truth of a capture
+// set that was rendered. Usage: measure_light CAPTURE TRUTH, where CAPTURE holds capture.toml (with
+// a mirror ball) and TRUTH response.json, lights.json, background.exr, probe/probe.exr and
 // probe/probe_latlong.exr (captures/desk/soft).
 #include <algorithm>
 #include <cmath>
@@ -35,8 +35,8 @@ using ar::ExposureCurve;
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(
-                                       share * static_cast<double>(values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -130,8 +130,9 @@ void opencv_curves(const std::string& name, const ar::Brackets& set, const Expos
       ar::Stopwatch watch;
       cv::Mat response;
       cv::createCalibrateDebevec(samples, smoothness)->process(pictures, response, times_s);
-      print_curve(fmt::format("OpenCV Debevec, {} samples, smoothness {:g}, {}", samples, smoothness, name),
-                  from_opencv(response), truth, watch.lap_ms());
+      print_curve(
+          fmt::format("OpenCV Debevec, {} samples, smoothness {:g}, {}", samples, smoothness, name),
+          from_opencv(response), truth, watch.lap_ms());
     }
   }
   for (const int rounds : {30, 100}) {
@@ -145,12 +146,14 @@ void opencv_curves(const std::string& name, const ar::Brackets& set, const Expos
 
 void responses(const ar::Brackets& photograph, const ar::Brackets& probe,
                const ExposureCurve& truth) {
-  fmt::print("| response from | rms, 1-254 | rms, 16-239 | largest | ms |\n|---|---|---|---|---|\n");
+  fmt::print(
+      "| response from | rms, 1-254 | rms, 16-239 | largest | ms |\n|---|---|---|---|---|\n");
   const std::vector<ar::Brackets> both{photograph, probe};
   for (const double smoothness : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
     ar::Stopwatch watch;
     const ExposureCurve curve = ar::fit_response(both, {.smoothness = smoothness});
-    print_curve(fmt::format("both sets, smoothness {:g}", smoothness), curve, truth, watch.lap_ms());
+    print_curve(fmt::format("both sets, smoothness {:g}", smoothness), curve, truth,
+                watch.lap_ms());
   }
   for (const auto& [name, set] : {std::pair{"photograph", &photograph}, {"probe", &probe}}) {
     ar::Stopwatch watch;
@@ -195,8 +198,9 @@ ar::FloatImage opencv_merged(const ar::Brackets& set, const ExposureCurve& curve
   cv::Mat response(256, 1, CV_32FC3), merged;
   for (int v = 0; v < 256; ++v)
     for (int c = 0; c < 3; ++c)
-      response.at<cv::Vec3f>(v)[c] = static_cast<float>(
-          std::max(1e-9, curve.exposure_from_value[static_cast<std::size_t>(c)][static_cast<std::size_t>(v)]));
+      response.at<cv::Vec3f>(v)[c] = static_cast<float>(std::max(
+          1e-9,
+          curve.exposure_from_value[static_cast<std::size_t>(c)][static_cast<std::size_t>(v)]));
   cv::createMergeDebevec()->process(pictures, merged, times_s, response);
   const auto* first = merged.ptr<float>();
   return {set.width(), set.height(), std::vector<float>(first, first + merged.total() * 3)};
@@ -205,8 +209,10 @@ ar::FloatImage opencv_merged(const ar::Brackets& set, const ExposureCurve& curve
 // ---- patches
 
 void emitters(const ar::SceneLight& light, const glm::dvec3& unit, const fs::path& truth) {
-  fmt::print("\n| emitter | measured / true radiance, r g b | power of its surface / true, r g b | patches |\n"
-             "|---|---|---|---|\n");
+  fmt::print(
+      "\n| emitter | measured / true radiance, r g b | power of its surface / true, r g b | "
+      "patches |\n"
+      "|---|---|---|---|\n");
   const auto lights = nlohmann::json::parse(std::ifstream(truth / "lights.json")).at("lights");
   const pipeline::PatchModel& model = light.scene.model;
   for (const auto& entry : lights) {
@@ -252,15 +258,18 @@ void probe_map(const ar::SceneLight& light, const glm::dvec3& unit, const fs::pa
         if (there[c] > 0.0) errors.push_back(std::abs(here[c] / there[c] - 1.0));
     }
   }
-  fmt::print("\nprobe map against probe_latlong.exr: median {:.2f} %, 95th percentile {:.1f} %; light "
-             "from all directions / true {:.3f} {:.3f} {:.3f}\n",
-             100.0 * quantile(errors, 0.5), 100.0 * quantile(errors, 0.95), got.x / expected.x,
-             got.y / expected.y, got.z / expected.z);
+  fmt::print(
+      "\nprobe map against probe_latlong.exr: median {:.2f} %, 95th percentile {:.1f} %; light "
+      "from all directions / true {:.3f} {:.3f} {:.3f}\n",
+      100.0 * quantile(errors, 0.5), 100.0 * quantile(errors, 0.95), got.x / expected.x,
+      got.y / expected.y, got.z / expected.z);
 }
 
 void surfaces(const ar::SceneLight& light, const glm::dvec3& unit) {
   const pipeline::PatchModel& model = light.scene.model;
-  fmt::print("\n| surface | patches | radiance r g b (mean) | reflectance r g b (mean) |\n|---|---|---|---|\n");
+  fmt::print(
+      "\n| surface | patches | radiance r g b (mean) | reflectance r g b (mean) "
+      "|\n|---|---|---|---|\n");
   for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
     glm::dvec3 radiance(0.0), reflectance(0.0);
     double area_m2 = 0.0;
@@ -274,8 +283,9 @@ void surfaces(const ar::SceneLight& light, const glm::dvec3& unit) {
     }
     radiance /= area_m2;
     reflectance /= area_m2;
-    fmt::print("| {} | {} | {:.3f} {:.3f} {:.3f} | {:.3f} {:.3f} {:.3f} |\n", model.surfaces[s], count,
-               radiance.x, radiance.y, radiance.z, reflectance.x, reflectance.y, reflectance.z);
+    fmt::print("| {} | {} | {:.3f} {:.3f} {:.3f} | {:.3f} {:.3f} {:.3f} |\n", model.surfaces[s],
+               count, radiance.x, radiance.y, radiance.z, reflectance.x, reflectance.y,
+               reflectance.z);
   }
 }
 
@@ -291,8 +301,8 @@ void run(const fs::path& folder, const fs::path& truth, bool curves) {
   const ExposureCurve curve = ar::fit_response(both);
   const ar::FloatImage photograph_exr = ar::read_float_image(truth / "background.exr");
   const ar::FloatImage probe_exr = ar::read_float_image(truth / "probe" / "probe.exr");
-  const ar::Lens lens(ar::camera_for_picture(ar::read_camera(capture.camera), probe_exr.width,
-                                             probe_exr.height));
+  const ar::Lens lens(
+      ar::camera_for_picture(ar::read_camera(capture.camera), probe_exr.width, probe_exr.height));
   const auto all = [](int, int) { return true; };
   const auto on_ball = [&](int x, int y) {
     const auto ray = ar::pixel_ray(lens, probe.world_from_camera, glm::dvec2(x, y));
@@ -300,18 +310,23 @@ void run(const fs::path& folder, const fs::path& truth, bool curves) {
     const auto reflection = ar::reflect(probe.ball, *ray);
     return reflection && reflection->cos_incidence > 0.2;
   };
-  fmt::print("\n| radiance | median error | 95th percentile | 99th percentile |\n|---|---|---|---|\n");
+  fmt::print(
+      "\n| radiance | median error | 95th percentile | 99th percentile |\n|---|---|---|---|\n");
   const double time_s = *photograph_set.photograph_time_s;
   glm::dvec3 unit =
-      compare("photograph against background.exr", ar::merge_radiance(photograph_set, curve).picture,
-              photograph_exr, all) / time_s;
+      compare("photograph against background.exr",
+              ar::merge_radiance(photograph_set, curve).picture, photograph_exr, all) /
+      time_s;
   const glm::dvec3 probe_unit =
       compare("ball against probe.exr", ar::merge_radiance(probe_set, curve).picture, probe_exr,
-              on_ball) / time_s;
+              on_ball) /
+      time_s;
   compare("photograph, true response", ar::merge_radiance(photograph_set, curve_truth).picture,
           photograph_exr, all);
-  compare("ball, true response", ar::merge_radiance(probe_set, curve_truth).picture, probe_exr, on_ball);
-  compare("photograph, OpenCV's MergeDebevec", opencv_merged(photograph_set, curve), photograph_exr, all);
+  compare("ball, true response", ar::merge_radiance(probe_set, curve_truth).picture, probe_exr,
+          on_ball);
+  compare("photograph, OpenCV's MergeDebevec", opencv_merged(photograph_set, curve), photograph_exr,
+          all);
   compare("ball, OpenCV's MergeDebevec", opencv_merged(probe_set, curve), probe_exr, on_ball);
   fmt::print("\nunits of the two / each other: {:.4f} {:.4f} {:.4f}\n", probe_unit.x / unit.x,
              probe_unit.y / unit.y, probe_unit.z / unit.z);
@@ -320,9 +335,12 @@ void run(const fs::path& folder, const fs::path& truth, bool curves) {
     ar::SceneLightOptions options;
     options.rounds = rounds;
     const ar::SceneLight light = ar::find_scene_light(capture, options);
-    fmt::print("\nrounds {}: photograph / probe {:.3f} {:.3f} {:.3f}; {} from photograph, {} probe, {} filled, {} shine\n", rounds,
-               light.photograph_over_probe.x, light.photograph_over_probe.y, light.photograph_over_probe.z,
-               light.from_photograph, light.from_probe, light.filled, light.emitting);
+    fmt::print(
+        "\nrounds {}: photograph / probe {:.3f} {:.3f} {:.3f}; {} from photograph, {} probe, {} "
+        "filled, {} shine\n",
+        rounds, light.photograph_over_probe.x, light.photograph_over_probe.y,
+        light.photograph_over_probe.z, light.from_photograph, light.from_probe, light.filled,
+        light.emitting);
     emitters(light, unit, truth);
     if (rounds != options.rounds || rounds != 60) continue;
     probe_map(light, unit, truth);
@@ -337,7 +355,8 @@ void run(const fs::path& folder, const fs::path& truth, bool curves) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 3 && argc != 4) throw std::runtime_error("usage: measure_light CAPTURE TRUTH [--curves]");
+    if (argc != 3 && argc != 4)
+      throw std::runtime_error("usage: measure_light CAPTURE TRUTH [--curves]");
     run(argv[1], argv[2], argc == 4);
     return 0;
   } catch (const std::exception& error) {
