@@ -195,7 +195,7 @@ FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets,
   if (is_constant(draw))
     setup.constant = shade(draw.shading, Fragment{});
   else
-    setup.shading = make_draw_shading(draw, memory);
+    setup.shading = make_draw_shading(draw, targets, memory);
   return setup;
 }
 
@@ -452,20 +452,15 @@ void DrawInTile::color_blocks(const SetupTriangle& triangle, const TriangleSourc
                       [&](std::size_t b) { writer_->write(b, passed[b], *fragments_.constant); });
     return;
   }
-  const bool in_vectors = fragments_.shading && kernels_.shade_block;
-  TileShading shading;
-  if (in_vectors)
-    shading = make_tile_shading(draw, *fragments_.shading, triangle, source, x0_, y0_);
-  if (in_vectors && writer_->plain_rgba8()) {
-    kernels_.shade_and_store(shading, blocks, passed, writer_->plain_rgba8());
+  if (fragments_.shading && kernels_.shade_and_store) {
+    const TileShading shading =
+        make_tile_shading(draw, *fragments_.shading, triangle, source, x0_, y0_);
+    kernels_.shade_and_store(shading, blocks, passed, writer_->tile());
     return;
   }
   for_each_block_of(blocks, [&](std::size_t b) {
     ColorPlanes colors;
-    if (in_vectors)
-      kernels_.shade_block(shading, b, passed[b], colors.data());
-    else
-      shade_pixels(triangle, source, b, passed[b], colors);
+    shade_pixels(triangle, source, b, passed[b], colors);
     writer_->write(b, passed[b], colors);
   });
 }

@@ -107,6 +107,20 @@ struct TileWeights {
   int order[3];
 };
 
+/// A depth lookup as the vector kernel wants it (raster/depth_lookup.h).
+struct LookupTerms {
+  float map_from_position[4][4];
+  /// The map's values, tile by tile (raster/tiled_plane.h), in units of which `units` - 1 are 1.0.
+  const std::uint32_t* texels;
+  int width, height, tiles_x;
+  float units;
+  CompareFunc func;
+  bool linear;
+  /// Texels outside the map have depth `border`, in [0, 1], and not that of the map's edge.
+  bool has_border;
+  float border;
+};
+
 /// A light as the vector kernel wants it; names and units are those of raster::Light.
 struct LitLight {
   float position[4];
@@ -119,9 +133,11 @@ struct LitLight {
   float spot_direction[3];
   float spot_cos_cutoff;
   int spot_exponent;
+  bool has_shadow_map;
+  LookupTerms shadow_map;
 };
 
-/// Lighting without textures and lookups (raster/shading.h), the same for all blocks of a draw.
+/// Lighting without textures (raster/shading.h), the same for all blocks of a draw.
 struct LitTerms {
   float material_ambient[3], material_diffuse[3], material_specular[3], material_emission[3];
   float material_alpha;
@@ -129,23 +145,39 @@ struct LitTerms {
   bool ambient, emission, diffuse, specular;
   /// The specular sum can change a bit of the result.
   bool specular_matters;
-  /// Some light or the highlight depends on the fragment's place.
+  /// Some light, its shadow map or the highlight depends on the fragment's place.
   bool world_matters;
   float scene_ambient[3], eye_world[3];
   float world_from_model[4][4], world_from_model_normal[3][3];
 };
 
-/// A triangle's colours over a tile: lit, or `flat_color` times the mesh's colours.
+/// A triangle's colours over a tile: lit, or `flat_color` times the mesh's colours and the share
+/// that a lookup gives.
 struct TileShading {
   TileWeights weights;
   const LitTerms* lit;
   const LitLight* lights;
   int light_count;
   float flat_color[4];
+  /// Of a flat colour, null if there is none; which channels it scales.
+  const LookupTerms* lookup;
+  bool lookup_scales_rgb, lookup_scales_alpha;
+  /// A pixel for which the lookup's share is 0 keeps its colour.
+  bool zero_share_keeps;
   /// Of the mesh triangle's three vertices.
   float normals[3][3], positions[3][4], colors[3][4];
   bool has_colors;
   bool reverse_normal;
+};
+
+/// The colours of a tile, block after block, and the state under which they are written.
+struct ColorTile {
+  /// Four bytes a pixel, or four floats; the other one is null.
+  std::uint8_t* rgba8;
+  float* rgba32f;
+  const ColorState* state;
+  /// The blend's constant colour in 8 bits.
+  std::uint8_t constant[4];
 };
 
 /// The kernels of one instruction set. Arrays of masks have one entry a block of the tile.
@@ -192,15 +224,10 @@ struct Kernels {
   void (*blend_block)(const ColorState& state, const std::uint8_t (&constant)[4], PixelMask mask,
                       const std::uint8_t* source, std::uint8_t* stored) noexcept;
 
-  /// Colours of the mask's pixels (there are some) of block b, four planes of 64; other pixels' are
-  /// not defined.
-  /// Null in plain C++: there shade() and interpolate() do it, pixel by pixel.
-  void (*shade_block)(const TileShading& shading, std::size_t b, PixelMask mask,
-                      float* colors) noexcept;
-
-  /// shade_block and store_colors for masks[b] of each of the blocks.
+  /// Colours the pixels masks[b] (there are some) of each of the blocks and writes them.
+  /// Null in plain C++: there shade(), interpolate() and BlockWriter do it, pixel by pixel.
   void (*shade_and_store)(const TileShading& shading, BlockMask blocks, const PixelMask* masks,
-                          std::uint8_t* stored) noexcept;
+                          const ColorTile& colors) noexcept;
 
   /// Rounds the mask's pixels (there are some) of 64 colours in four planes to RGBA8
   /// (raster/unorm.h) and stores them; the others stay.

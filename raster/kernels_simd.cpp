@@ -32,10 +32,10 @@ namespace gnomon::raster {
 namespace HWY_NAMESPACE {
 
 const Kernels* kernels_of_this_target() {
-  static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges, test_blocks,
-                                    count_blocks, add_to_blocks, stencil_blocks, depth_range,
-                                    fill_block,   blend_block,   shade_block,    shade_and_store,
-                                    store_colors, transform,     project,        select_triangles};
+  static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges,  test_blocks,
+                                    count_blocks, add_to_blocks, stencil_blocks,  depth_range,
+                                    fill_block,   blend_block,   shade_and_store, store_colors,
+                                    transform,    project,       select_triangles};
   return &kKernels;
 }
 

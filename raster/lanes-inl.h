@@ -25,6 +25,10 @@ using DU8 = hn::CappedTag<std::uint8_t, kPixels>;
 using VI32 = hn::Vec<DI32>;
 using VU32 = hn::Vec<DU32>;
 using VU8 = hn::Vec<DU8>;
+using DF32 = hn::CappedTag<float, kPixels>;
+using VF32 = hn::Vec<DF32>;
+
+HWY_INLINE VF32 set(float value) { return hn::Set(DF32(), value); }
 
 /// The pixels of lanes [first, first + Lanes) as a vector mask.
 template <class D>

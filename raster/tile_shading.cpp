@@ -1,5 +1,6 @@
 #include "raster/tile_shading.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gnomon::raster {
@@ -35,6 +36,50 @@ bool specular_matters(const Lit& lit) {
   return false;
 }
 
+LookupTerms make_lookup(const DepthLookup& lookup) {
+  LookupTerms out{};
+  for (int c = 0; c < 4; ++c)
+    copy(lookup.map_from_position[c], out.map_from_position[static_cast<std::size_t>(c)]);
+  const TiledPlane<std::uint32_t>& texels = lookup.map->plane();
+  out.texels = texels.tile(0, 0);
+  out.width = texels.width();
+  out.height = texels.height();
+  out.tiles_x = texels.tiles_x();
+  out.units = static_cast<float>(lookup.map->max_value() + 1);
+  out.func = lookup.func;
+  out.linear = lookup.filter == Filter::linear;
+  out.has_border = lookup.border.has_value();
+  const float border = lookup.border.value_or(0.0f);
+  out.border = std::isnan(border) ? 0.0f : std::clamp(border, 0.0f, 1.0f);
+  return out;
+}
+
+/// Written over a stored channel, a source of 0 changes nothing.
+bool zero_keeps(BlendOp op, BlendFactor stored) {
+  return op == BlendOp::max ||
+         ((op == BlendOp::add || op == BlendOp::reverse_subtract) && stored == BlendFactor::one);
+}
+
+/// Of an RGBA8 target, where a source of 0 is 0, whatever it is a product of.
+bool zero_share_keeps(const FlatLookup& lookup, const ColorState& state) {
+  const bool writes_rgb = state.write[0] || state.write[1] || state.write[2];
+  const std::optional<Blend>& blend = state.blend;
+  const bool rgb_stays =
+      blend && lookup.scales_rgb && zero_keeps(blend->color_op, blend->dst_color);
+  const bool alpha_stays =
+      blend && lookup.scales_alpha && zero_keeps(blend->alpha_op, blend->dst_alpha);
+  return (rgb_stays || !writes_rgb) && (alpha_stays || !state.write[3]);
+}
+
+FlatLookup make_flat_lookup(const Flat& flat, const ColorState& state, ColorFormat format) {
+  FlatLookup out;
+  out.terms = make_lookup(*flat.depth_lookup);
+  out.scales_rgb = flat.depth_texture_mode != DepthTextureMode::alpha;
+  out.scales_alpha = flat.depth_texture_mode != DepthTextureMode::luminance;
+  out.zero_share_keeps = format == ColorFormat::rgba8 && zero_share_keeps(out, state);
+  return out;
+}
+
 LitLight make_light(const Light& light) {
   LitLight out{};
   copy(light.position, out.position);
@@ -46,6 +91,8 @@ LitLight make_light(const Light& light) {
   copy(light.spot_direction, out.spot_direction);
   out.spot_cos_cutoff = light.spot_cos_cutoff;
   out.spot_exponent = light.spot_exponent;
+  out.has_shadow_map = light.shadow_map.has_value();
+  if (light.shadow_map) out.shadow_map = make_lookup(*light.shadow_map);
   // The strength is 0 or 1 then, and 0 times it is 0.
   const bool finite_strength =
       (light.position.w == 0.0f || out.keeps_strength) && light.spot_cos_cutoff <= -1.0f;
@@ -69,7 +116,7 @@ LitTerms make_lit(const Lit& lit) {
   out.specular_matters = specular_matters(lit);
   out.world_matters = out.specular_matters;
   for (const Light& light : lit.lights)
-    out.world_matters = out.world_matters || light.position.w != 0.0f;
+    out.world_matters = out.world_matters || light.position.w != 0.0f || light.shadow_map;
   copy(lit.scene_ambient, out.scene_ambient);
   copy(lit.eye_world, out.eye_world);
   for (int c = 0; c < 4; ++c)
@@ -81,18 +128,19 @@ LitTerms make_lit(const Lit& lit) {
 
 }  // namespace
 
-std::optional<DrawShading> make_draw_shading(const Draw& draw, std::pmr::memory_resource& memory) {
+std::optional<DrawShading> make_draw_shading(const Draw& draw, const Targets& targets,
+                                             std::pmr::memory_resource& memory) {
   if (const Flat* flat = std::get_if<Flat>(&draw.shading)) {
-    if (flat->texture || flat->depth_lookup) return std::nullopt;
-    return DrawShading{.lights = std::pmr::vector<LitLight>(&memory)};
+    if (flat->texture) return std::nullopt;
+    DrawShading shading{.lights = std::pmr::vector<LitLight>(&memory)};
+    if (flat->depth_lookup)
+      shading.lookup = make_flat_lookup(*flat, draw.state.color, targets.color->format());
+    return shading;
   }
   const Lit& lit = std::get<Lit>(draw.shading);
   if (lit.texture) return std::nullopt;
   DrawShading shading{.lights = std::pmr::vector<LitLight>(&memory)};
-  for (const Light& light : lit.lights) {
-    if (light.shadow_map) return std::nullopt;
-    shading.lights.push_back(make_light(light));
-  }
+  for (const Light& light : lit.lights) shading.lights.push_back(make_light(light));
   shading.lit = make_lit(lit);
   shading.two_sided = lit.two_sided;
   return shading;
@@ -123,15 +171,22 @@ TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
   out.lights = shading.lights.data();
   out.light_count = static_cast<int>(shading.lights.size());
   if (const Flat* flat = std::get_if<Flat>(&draw.shading)) copy(flat->color, out.flat_color);
+  if (const auto& lookup = shading.lookup) {
+    out.lookup = &lookup->terms;
+    out.lookup_scales_rgb = lookup->scales_rgb;
+    out.lookup_scales_alpha = lookup->scales_alpha;
+    out.zero_share_keeps = lookup->zero_share_keeps;
+  } else {
+    out.lookup = nullptr;
+  }
   const MeshView& mesh = draw.mesh;
   out.has_colors = !mesh.colors.empty();
   out.reverse_normal = shading.two_sided && !triangle.front_facing;
   for (std::size_t v = 0; v < 3; ++v) {
     const std::uint32_t index = mesh.indices[triangle.first_index + v];
     if (out.has_colors) copy(mesh.colors[index], out.colors[v]);
-    if (!out.lit) continue;
-    copy(mesh.normals[index], out.normals[v]);
-    copy(mesh.positions[index], out.positions[v]);
+    if (out.lit) copy(mesh.normals[index], out.normals[v]);
+    if (out.lit || out.lookup) copy(mesh.positions[index], out.positions[v]);
   }
   return out;
 }

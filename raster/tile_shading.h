@@ -1,5 +1,5 @@
-// A draw's shading put together for the vector kernel (Kernels::shade_block), for shadings that
-// need neither texture nor lookup.
+// A draw's shading put together for the vector kernel (Kernels::shade_and_store), for shadings
+// without texture.
 #pragma once
 
 #include <memory_resource>
@@ -13,17 +13,27 @@
 
 namespace gnomon::raster {
 
+/// A flat colour's depth lookup and the channels that it scales.
+struct FlatLookup {
+  LookupTerms terms{};
+  bool scales_rgb = false, scales_alpha = false;
+  /// A pixel for which its share is 0 keeps its colour.
+  bool zero_share_keeps = false;
+};
+
 /// What all blocks of a draw share.
 struct DrawShading {
+  std::optional<FlatLookup> lookup;
   std::optional<LitTerms> lit;
   std::pmr::vector<LitLight> lights;
   /// With `lit`, back faces are lit with the reversed normal.
   bool two_sided = false;
 };
 
-/// Absent if the draw is shaded pixel by pixel. `memory` outlives the result, which may be moved
-/// but not copied: `lit` points at `lights`.
-std::optional<DrawShading> make_draw_shading(const Draw& draw, std::pmr::memory_resource& memory);
+/// Absent if the draw is shaded pixel by pixel. `memory` outlives the result.
+/// Precondition: there is a colour target.
+std::optional<DrawShading> make_draw_shading(const Draw& draw, const Targets& targets,
+                                             std::pmr::memory_resource& memory);
 
 /// A triangle's shading in the tile whose first pixel is (x, y).
 TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,

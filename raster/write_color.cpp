@@ -19,6 +19,13 @@ BlockWriter::BlockWriter(const Kernels& kernels, ColorBuffer& target, TileIndex 
     rgba32f_ = target.rgba32f().tile(tile.x, tile.y);
 }
 
+ColorTile BlockWriter::tile() const {
+  return {rgba8_ ? rgba8_->data() : nullptr,
+          rgba32f_ ? &rgba32f_->x : nullptr,
+          &state_,
+          {constant_[0], constant_[1], constant_[2], constant_[3]}};
+}
+
 void BlockWriter::write(std::size_t b, PixelMask mask, const ColorPlanes& colors) const {
   if (rgba8_ && plain_) {
     kernels_.store_colors(colors.data(), mask, (rgba8_ + b * kPixelsPerBlock)->data());

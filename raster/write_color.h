@@ -36,9 +36,8 @@ class BlockWriter {
   void write(std::size_t b, PixelMask mask, const Rgba8Block& colors) const;
 
   bool is_rgba8() const { return rgba8_ != nullptr; }
-  /// The tile's pixels, four bytes each, if what is written is rounded and stored and no more; else
-  /// null.
-  std::uint8_t* plain_rgba8() const { return plain_ && rgba8_ ? rgba8_->data() : nullptr; }
+  /// For Kernels::shade_and_store; valid as long as the state is.
+  ColorTile tile() const;
 
  private:
   const Kernels& kernels_;
