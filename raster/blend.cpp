@@ -107,9 +107,11 @@ glm::vec4 blend_rgba32f(const ColorState& state, const glm::vec4& source,
     out =
         combine<float>(*state.blend, out, channels(stored), channels(state.blend->constant), 1.0f);
   for (std::size_t c = 0; c < 4; ++c) {
+    const float old = stored[static_cast<int>(c)];
     // A processor's own NaN may be negative or not.
-    if (std::isnan(out[c])) out[c] = std::numeric_limits<float>::quiet_NaN();
-    if (!state.write[c]) out[c] = stored[static_cast<int>(c)];
+    if (std::isnan(out[c]))
+      out[c] = std::isnan(old) ? old : std::numeric_limits<float>::quiet_NaN();
+    if (!state.write[c]) out[c] = old;
   }
   return {out[0], out[1], out[2], out[3]};
 }

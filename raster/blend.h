@@ -1,7 +1,8 @@
 // Blending and colour mask (OpenGL 4.6, sections 17.3.6 and 17.4). RGBA8: the source is rounded to
 // 8 bits first, factors are 8-bit integers, and the result is the exact rational rounded to nearest
 // (ties cannot occur: the denominator is 255). RGBA32F: float32, each operation rounded once;
-// nothing is clamped; a NaN is stored as 0x7fc00000.
+// nothing is clamped; a NaN is stored as 0x7fc00000, and a stored NaN that a NaN is written over
+// stays.
 #pragma once
 
 #include <array>

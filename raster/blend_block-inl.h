@@ -219,9 +219,11 @@ HWY_INLINE Channels<DF32> blend_floats(const ColorState& state, const Channels<D
     const Blended<DF32, float> blended{*state.blend, color, old, constant, 1.0f};
     for (std::size_t c = 0; c < 4; ++c) out.c[c] = blended.channel(c);
   }
-  for (std::size_t c = 0; c < 4; ++c)
-    out.c[c] =
-        state.write[c] ? hn::IfThenElse(hn::Eq(out.c[c], out.c[c]), out.c[c], nan) : old.c[c];
+  const auto is_number = [](VF32 v) HWY_ATTR { return hn::Eq(v, v); };
+  for (std::size_t c = 0; c < 4; ++c) {
+    const VF32 if_nan = hn::IfThenElse(is_number(old.c[c]), nan, old.c[c]);
+    out.c[c] = state.write[c] ? hn::IfThenElse(is_number(out.c[c]), out.c[c], if_nan) : old.c[c];
+  }
   return out;
 }
 

@@ -97,8 +97,7 @@ HWY_INLINE VF32 passes(const LookupTerms& lookup, VI32 x, VI32 y, const LookupRe
     const VF32 border = set(lookup.border);
     const VI32 side = hn::Sub(hn::VecFromMask(d, hn::RebindMask(d, hn::Lt(ref.share, border))),
                               hn::VecFromMask(d, hn::RebindMask(d, hn::Gt(ref.share, border))));
-    const VI32 inside =
-        hn::VecFromMask(d, hn::And(hn::Eq(x, inner_x), hn::Eq(y, inner_y)));
+    const VI32 inside = hn::VecFromMask(d, hn::And(hn::Eq(x, inner_x), hn::Eq(y, inner_y)));
     const VI32 of_border = hn::VecFromMask(d, holds(lookup.func, side, side, zero));
     passed = hn::MaskFromVec(hn::IfVecThenElse(inside, hn::VecFromMask(d, passed), of_border));
   }
@@ -121,10 +120,9 @@ HWY_INLINE VF32 compare_depth(const LookupTerms& lookup, VF32 x, VF32 y, VF32 z,
   const DI32 whole_d;
   const auto row = [&](std::size_t i) HWY_ATTR {
     const auto& m = lookup.map_from_position;
-    return hn::Add(
-        hn::Add(hn::Add(hn::Mul(set(m[0][i]), x), hn::Mul(set(m[1][i]), y)),
-                hn::Mul(set(m[2][i]), z)),
-        hn::Mul(set(m[3][i]), w));
+    return hn::Add(hn::Add(hn::Add(hn::Mul(set(m[0][i]), x), hn::Mul(set(m[1][i]), y)),
+                           hn::Mul(set(m[2][i]), z)),
+                   hn::Mul(set(m[3][i]), w));
   };
   const VF32 q = row(3);
   VF32 u = texel_coordinate(hn::Div(row(0), q), lookup.width);

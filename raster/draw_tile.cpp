@@ -176,14 +176,15 @@ constexpr int kFewBlocks = 4;
 
 }  // namespace
 
-FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets,
+FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets, const Kernels& kernels,
                                   std::pmr::memory_resource& memory) {
   FragmentSetup setup;
   setup.color = targets.color && any(draw.state.color.write);
   setup.front = make_face_setup(resolve_tests(draw, targets, true), setup.color);
   setup.back = make_face_setup(resolve_tests(draw, targets, false), setup.color);
-  bool keeps_stencil = true;
+  bool keeps_stencil = true, keeps_depth = true;
   for (const FaceSetup* face : {&setup.front, &setup.back}) {
+    keeps_depth = keeps_depth && !face->tests.depth_write;
     const bool changes = writes_stencil(face->tests);
     keeps_stencil = keeps_stencil && !changes;
     setup.uses_stencil =
@@ -192,10 +193,11 @@ FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets,
   for (FaceSetup* face : {&setup.front, &setup.back})
     face->selects = keeps_stencil && !stencil_test_passes_all(face->tests);
   if (!setup.color) return setup;
+  setup.changes_color_only = keeps_depth && keeps_stencil;
   if (is_constant(draw))
     setup.constant = shade(draw.shading, Fragment{});
   else
-    setup.shading = make_draw_shading(draw, targets, memory);
+    setup.shading = make_draw_shading(draw, targets, kernels, memory);
   return setup;
 }
 
@@ -206,7 +208,11 @@ DrawInTile::DrawInTile(const DrawSetup& setup, const FragmentSetup& fragments, T
       kernels_(pixels.kernels()),
       x0_(pixels.tile().x * kTileSize),
       y0_(pixels.tile().y * kTileSize),
-      inside_(blocks_inside(setup.box, x0_, y0_)) {
+      inside_(blocks_inside(setup.box, x0_, y0_)),
+      lookup_(fragments.changes_color_only && fragments.shading && fragments.shading->lookup &&
+                      !fragments.shading->lookup->ranges.empty()
+                  ? &*fragments.shading->lookup
+                  : nullptr) {
   if (fragments.uses_stencil) pixels_.add_counts();
   if (fragments.color)
     writer_.emplace(kernels_, *pixels.targets().color, pixels.tile(), setup.draw->state.color);
@@ -289,8 +295,18 @@ bool DrawInTile::is_idle() {
   return idle(fragments_.front) && idle(fragments_.back);
 }
 
+bool DrawInTile::is_idle_in(const std::array<glm::vec4, 8>& corners) const {
+  constexpr std::uint32_t kCorners[] = {0, 1, 2, 3, 4, 5, 6, 7};
+  return lookup_ && lookup_->leaves_no_mark(kernels_, corners.data(), kCorners, 8);
+}
+
 void DrawInTile::draw(const SetupTriangle& triangle, const TriangleSource& source) noexcept {
   const FaceSetup& face = triangle.front_facing ? fragments_.front : fragments_.back;
+  const MeshView& mesh = setup_.draw->mesh;
+  if (lookup_ && triangle.piece == SetupTriangle::kWhole &&
+      lookup_->leaves_no_mark(kernels_, mesh.positions.data(), &mesh.indices[triangle.first_index],
+                              3))
+    return;
   // What the front end found out about its pixels holds where none of them lies in another tile.
   if (triangle.pixels && triangle.x0 >= x0_ && triangle.y0 >= y0_ &&
       triangle.x1 <= x0_ + kTileSize && triangle.y1 <= y0_ + kTileSize)

@@ -41,12 +41,14 @@ struct FragmentSetup {
   std::optional<glm::vec4> constant;
   /// How the vector kernel shades it, if it can.
   std::optional<DrawShading> shading;
+  /// Fragments change nothing but colour.
+  bool changes_color_only = false;
   /// The stencil is read, or written otherwise than by counts.
   bool uses_stencil = false;
 };
 
 /// `memory` outlives it.
-FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets,
+FragmentSetup make_fragment_setup(const Draw& draw, const Targets& targets, const Kernels& kernels,
                                   std::pmr::memory_resource& memory);
 
 /// A draw on its way through one tile.
@@ -57,6 +59,10 @@ class DrawInTile {
 
   /// No triangle can leave a mark in the tile.
   bool is_idle();
+  /// The same of triangles that are not cut, all of them in the box of these eight corners.
+  bool is_idle_in(const std::array<glm::vec4, 8>& corners) const;
+  /// That can be true.
+  bool selects_by_lookup() const { return lookup_ != nullptr; }
 
   /// Draws the triangle's pixels inside the tile. `source` is that of its chunk.
   void draw(const SetupTriangle& triangle, const TriangleSource& source) noexcept;
@@ -96,6 +102,8 @@ class DrawInTile {
   const int x0_, y0_;
   /// The blocks that lie wholly inside the draw's box.
   const BlockMask inside_;
+  /// Triangles that it gives 0 all over need not be drawn; null if there is no such lookup.
+  const FlatLookup* const lookup_;
   std::optional<BlockWriter> writer_;
   /// Blocks whose stencil lets a fragment of the front (back) through; computed when needed.
   std::optional<BlockMask> front_blocks_, back_blocks_;

@@ -14,6 +14,7 @@
 #include "raster/draw_geometry.h"
 #include "raster/draw_tile.h"
 #include "raster/executor.h"
+#include "raster/lookup_bounds.h"
 #include "raster/tile.h"
 
 namespace gnomon::raster {
@@ -78,7 +79,7 @@ std::size_t geometry_of(Memory& memory, const DrawSetup& setup) {
   return memory.geometry_count++;
 }
 
-void set_up_draws(Memory& memory) {
+void set_up_draws(Memory& memory, const Kernels& kernels) {
   memory.geometry_count = 0;
   memory.vertices.clear();
   memory.chunks.clear();
@@ -86,7 +87,7 @@ void set_up_draws(Memory& memory) {
     const Draw* draw = std::get_if<Draw>(job.command);
     if (!draw) continue;
     job.setup = make_draw_setup(*draw, job.targets);
-    job.fragments = make_fragment_setup(*draw, job.targets, memory.pool);
+    job.fragments = make_fragment_setup(*draw, job.targets, kernels, memory.pool);
     job.geometry = geometry_of(memory, job.setup);
   }
   for (std::size_t g = 0; g < memory.geometry_count; ++g) {
@@ -99,12 +100,54 @@ void set_up_draws(Memory& memory) {
   }
 }
 
-void draw_in_tile(const Job& job, const DrawGeometry& geometry, TilePixels& pixels) {
+/// The corners of a box round the triangles of one geometry in a tile, kept for the draws that
+/// share it.
+class TileBox {
+ public:
+  /// Absent if there is no such box, or a triangle is cut.
+  const std::optional<std::array<glm::vec4, 8>>& corners(const Job& job,
+                                                         const DrawGeometry& geometry,
+                                                         TileIndex tile) {
+    if (geometry_ != &geometry) corners_ = corners_of(job.setup.draw->mesh, geometry, tile);
+    geometry_ = &geometry;
+    return corners_;
+  }
+
+ private:
+  static std::optional<std::array<glm::vec4, 8>> corners_of(const MeshView& mesh,
+                                                            const DrawGeometry& geometry,
+                                                            TileIndex tile) {
+    PositionBox box;
+    for (const TriangleChunk& chunk : geometry.chunks())
+      for (const std::uint32_t number : chunk.bins.of(tile)) {
+        const SetupTriangle& triangle = chunk.set_up.triangles[number];
+        if (triangle.piece != SetupTriangle::kWhole) return std::nullopt;
+        for (std::size_t k = 0; k < 3; ++k)
+          box.add(mesh.positions[mesh.indices[triangle.first_index + k]]);
+      }
+    return box.corners();
+  }
+
+  const DrawGeometry* geometry_ = nullptr;
+  std::optional<std::array<glm::vec4, 8>> corners_;
+};
+
+bool is_idle(DrawInTile& draw, const Job& job, const DrawGeometry& geometry, TileIndex tile,
+             TileBox& box) {
+  if (draw.is_idle()) return true;
+  if (!draw.selects_by_lookup()) return false;
+  const auto& corners = box.corners(job, geometry, tile);
+  return corners && draw.is_idle_in(*corners);
+}
+
+void draw_in_tile(const Job& job, const DrawGeometry& geometry, TilePixels& pixels, TileBox& box) {
   std::optional<DrawInTile> draw;
   for (const TriangleChunk& chunk : geometry.chunks()) {
     const std::span<const std::uint32_t> numbers = chunk.bins.of(pixels.tile());
     if (numbers.empty()) continue;
-    if (!draw && draw.emplace(job.setup, job.fragments, pixels).is_idle()) return;
+    if (!draw &&
+        is_idle(draw.emplace(job.setup, job.fragments, pixels), job, geometry, pixels.tile(), box))
+      return;
     const TriangleSource source = geometry.source_of(chunk);
     for (const std::uint32_t number : numbers) draw->draw(chunk.set_up.triangles[number], source);
   }
@@ -113,6 +156,7 @@ void draw_in_tile(const Job& job, const DrawGeometry& geometry, TilePixels& pixe
 void run_tile(const Memory& memory, const Kernels& kernels, std::size_t tile, const Size& size) {
   TilePixels pixels(
       kernels, {static_cast<int>(tile) % size.tiles_x(), static_cast<int>(tile) / size.tiles_x()});
+  TileBox box;
   for (const Job& job : memory.jobs) {
     pixels.use(job.targets);
     if (const Clear* clear = std::get_if<Clear>(job.command))
@@ -120,7 +164,7 @@ void run_tile(const Memory& memory, const Kernels& kernels, std::size_t tile, co
     else if (const Blit* blit = std::get_if<Blit>(job.command))
       blit_tile(*blit, pixels);
     else
-      draw_in_tile(job, *memory.geometries[job.geometry], pixels);
+      draw_in_tile(job, *memory.geometries[job.geometry], pixels, box);
   }
 }
 
@@ -158,7 +202,7 @@ bool must_wait(const std::vector<Job>& jobs, const Command& command, const Targe
 
 void run_group(Memory& memory, const Size& size, const Kernels& kernels, int threads) {
   if (memory.jobs.empty()) return;
-  set_up_draws(memory);
+  set_up_draws(memory, kernels);
   const auto run_vertices = [&](std::size_t i) {
     const Task& task = memory.vertices[i];
     task.geometry->run_vertices(kernels, task.first, task.last);

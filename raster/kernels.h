@@ -121,6 +121,18 @@ struct LookupTerms {
   float border;
 };
 
+/// The least and the greatest depth in an 8x8 block of a map.
+struct LookupRange {
+  std::uint32_t least, greatest;
+};
+
+/// A lookup with the ranges of its map's blocks, row after row.
+struct LookupBounds {
+  const LookupTerms* lookup;
+  const LookupRange* blocks;
+  int blocks_x;
+};
+
 /// A light as the vector kernel wants it; names and units are those of raster::Light.
 struct LitLight {
   float position[4];
@@ -228,6 +240,12 @@ struct Kernels {
   /// Null in plain C++: there shade(), interpolate() and BlockWriter do it, pixel by pixel.
   void (*shade_and_store)(const TileShading& shading, BlockMask blocks, const PixelMask* masks,
                           const ColorTile& colors) noexcept;
+
+  /// The comparison holds at no fragment that lies between the positions with these indices, of
+  /// triangles that are not cut; false also where that is not found out.
+  /// Null in plain C++.
+  bool (*lookup_fails)(const LookupBounds& bounds, const glm::vec4* positions,
+                       const std::uint32_t* index, int count) noexcept;
 
   /// Rounds the mask's pixels (there are some) of 64 colours in four planes to RGBA8
   /// (raster/unorm.h) and stores them; the others stay.

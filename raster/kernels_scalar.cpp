@@ -271,10 +271,10 @@ void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count
 }  // namespace
 
 const Kernels& scalar_kernels() {
-  static constexpr Kernels kKernels{cover_blocks, cover_pixels,     compare_ranges,  test_blocks,
-                                    count_blocks, add_to_blocks,    stencil_blocks,  depth_range,
-                                    fill_block,   blend_block,      nullptr,         store_colors,
-                                    transform,    project_vertices, select_triangles};
+  static constexpr Kernels kKernels{
+      cover_blocks,   cover_pixels, compare_ranges,   test_blocks,     count_blocks, add_to_blocks,
+      stencil_blocks, depth_range,  fill_block,       blend_block,     nullptr,      nullptr,
+      store_colors,   transform,    project_vertices, select_triangles};
   return kKernels;
 }
 

@@ -21,6 +21,7 @@
 #include "raster/count_blocks-inl.h"
 #include "raster/cover-inl.h"
 #include "raster/depth_ranges-inl.h"
+#include "raster/lookup_bounds-inl.h"
 #include "raster/project-inl.h"
 #include "raster/select_triangles-inl.h"
 #include "raster/shade_blocks-inl.h"
@@ -34,8 +35,8 @@ namespace HWY_NAMESPACE {
 const Kernels* kernels_of_this_target() {
   static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges,  test_blocks,
                                     count_blocks, add_to_blocks, stencil_blocks,  depth_range,
-                                    fill_block,   blend_block,   shade_and_store, store_colors,
-                                    transform,    project,       select_triangles};
+                                    fill_block,   blend_block,   shade_and_store, lookup_fails,
+                                    store_colors, transform,     project,         select_triangles};
   return &kKernels;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raster/lookup_bounds.h"
+
 namespace gnomon::raster {
 
 namespace {
@@ -54,29 +56,16 @@ LookupTerms make_lookup(const DepthLookup& lookup) {
   return out;
 }
 
-/// Written over a stored channel, a source of 0 changes nothing.
-bool zero_keeps(BlendOp op, BlendFactor stored) {
-  return op == BlendOp::max ||
-         ((op == BlendOp::add || op == BlendOp::reverse_subtract) && stored == BlendFactor::one);
-}
-
-/// Of an RGBA8 target, where a source of 0 is 0, whatever it is a product of.
-bool zero_share_keeps(const FlatLookup& lookup, const ColorState& state) {
-  const bool writes_rgb = state.write[0] || state.write[1] || state.write[2];
-  const std::optional<Blend>& blend = state.blend;
-  const bool rgb_stays =
-      blend && lookup.scales_rgb && zero_keeps(blend->color_op, blend->dst_color);
-  const bool alpha_stays =
-      blend && lookup.scales_alpha && zero_keeps(blend->alpha_op, blend->dst_alpha);
-  return (rgb_stays || !writes_rgb) && (alpha_stays || !state.write[3]);
-}
-
-FlatLookup make_flat_lookup(const Flat& flat, const ColorState& state, ColorFormat format) {
-  FlatLookup out;
-  out.terms = make_lookup(*flat.depth_lookup);
+FlatLookup make_flat_lookup(const Draw& draw, const Flat& flat, ColorFormat format,
+                            const Kernels& kernels, std::pmr::memory_resource& memory) {
+  FlatLookup out{.terms = make_lookup(*flat.depth_lookup),
+                 .ranges = std::pmr::vector<LookupRange>(&memory)};
   out.scales_rgb = flat.depth_texture_mode != DepthTextureMode::alpha;
   out.scales_alpha = flat.depth_texture_mode != DepthTextureMode::luminance;
-  out.zero_share_keeps = format == ColorFormat::rgba8 && zero_share_keeps(out, state);
+  out.zero_keeps = zero_keeps(draw, flat, format);
+  out.is_rgba8 = format == ColorFormat::rgba8;
+  if (out.zero_keeps && kernels.lookup_fails)
+    out.ranges = lookup_ranges(draw, *flat.depth_lookup, kernels, memory);
   return out;
 }
 
@@ -129,12 +118,13 @@ LitTerms make_lit(const Lit& lit) {
 }  // namespace
 
 std::optional<DrawShading> make_draw_shading(const Draw& draw, const Targets& targets,
+                                             const Kernels& kernels,
                                              std::pmr::memory_resource& memory) {
   if (const Flat* flat = std::get_if<Flat>(&draw.shading)) {
     if (flat->texture) return std::nullopt;
     DrawShading shading{.lights = std::pmr::vector<LitLight>(&memory)};
     if (flat->depth_lookup)
-      shading.lookup = make_flat_lookup(*flat, draw.state.color, targets.color->format());
+      shading.lookup = make_flat_lookup(draw, *flat, targets.color->format(), kernels, memory);
     return shading;
   }
   const Lit& lit = std::get<Lit>(draw.shading);
@@ -144,6 +134,13 @@ std::optional<DrawShading> make_draw_shading(const Draw& draw, const Targets& ta
   shading.lit = make_lit(lit);
   shading.two_sided = lit.two_sided;
   return shading;
+}
+
+bool FlatLookup::leaves_no_mark(const Kernels& kernels, const glm::vec4* positions,
+                                const std::uint32_t* index, int count) const {
+  if (ranges.empty()) return false;
+  const LookupBounds bounds{&terms, ranges.data(), (terms.width + kBlockSize - 1) / kBlockSize};
+  return kernels.lookup_fails(bounds, positions, index, count);
 }
 
 TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
@@ -175,7 +172,9 @@ TileShading make_tile_shading(const Draw& draw, const DrawShading& shading,
     out.lookup = &lookup->terms;
     out.lookup_scales_rgb = lookup->scales_rgb;
     out.lookup_scales_alpha = lookup->scales_alpha;
-    out.zero_share_keeps = lookup->zero_share_keeps;
+    // A piece's weights may be a little below 0.
+    out.zero_share_keeps =
+        lookup->zero_keeps && (lookup->is_rgba8 || triangle.piece == SetupTriangle::kWhole);
   } else {
     out.lookup = nullptr;
   }

@@ -33,10 +33,10 @@ void fill_map(Random& random, DepthBuffer& map) {
   const int x1 = x0 + map.width() / 4, y1 = y0 + map.height() / 4, near = random.integer(0, one);
   for (int y = 0; y < map.height(); ++y)
     for (int x = 0; x < map.width(); ++x)
-      map.plane().at(x, y) = static_cast<std::uint32_t>(
-          noise                                          ? random.integer(0, one)
-          : x >= x0 && y >= y0 && x <= x1 && y <= y1 ? near
-                                                         : one);
+      map.plane().at(x, y) =
+          static_cast<std::uint32_t>(noise ? random.integer(0, one)
+                                     : x >= x0 && y >= y0 && x <= x1 && y <= y1 ? near
+                                                                                : one);
 }
 
 /// Clip-space position to (s, t, r, q): straight, or turned and in perspective.
@@ -66,8 +66,8 @@ DepthLookup random_lookup(Random& random, const DepthBuffer& map) {
 float random_channel(Random& random, bool wild) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   if (!wild || random.chance(0.7f)) return random.real(0.0f, 0.3f);
-  return any_of(random, std::array{0.0f, -0.0f, -0.25f, 3.0f, 1e30f, -1e-42f, kInfinity,
-                                   std::nanf("")});
+  return any_of(random,
+                std::array{0.0f, -0.0f, -0.25f, 3.0f, 1e30f, -1e-42f, kInfinity, std::nanf("")});
 }
 
 glm::vec4 random_color(Random& random, bool wild) {
@@ -76,16 +76,17 @@ glm::vec4 random_color(Random& random, bool wild) {
   return color;
 }
 
-/// A sheet of n x n quads, uneven and seen in perspective, and some triangles of any size; a part
-/// of it may be behind the eye or off the target.
+/// A sheet of n x n quads, uneven and seen in perspective or all with w = 1, and some triangles of
+/// any size; a part of it may be behind the eye or off the target.
 Triangles random_triangles(Random& random, bool wild_colors) {
   const int n = random.integer(1, 14);
   const float reach = random.chance(0.3f) ? 2.5f : 0.95f;
+  const bool flat = random.chance(0.5f);
   std::vector<glm::vec4> sheet;
   for (int y = 0; y <= n; ++y)
     for (int x = 0; x <= n; ++x) {
       const auto at = [&](int i) { return reach * (2.0f * static_cast<float>(i) / n - 1.0f); };
-      const float w = random.chance(0.02f) ? -0.5f : random.real(1.0f, 1.5f);
+      const float w = flat ? 1.0f : random.chance(0.02f) ? -0.5f : random.real(1.0f, 1.5f);
       sheet.push_back(glm::vec4(at(x) + random.real(-0.02f, 0.02f),
                                 at(y) + random.real(-0.02f, 0.02f), random.real(-0.3f, 0.5f), 1) *
                       w);
@@ -115,18 +116,24 @@ ColorState random_color_state(Random& random) {
                         .src_color = BlendFactor::one,
                         .dst_color = BlendFactor::one};
     state.write[3] = false;
-    if (random.chance(0.3f)) state.blend->color_op = any_of(random, std::array{BlendOp::add, BlendOp::max, BlendOp::min, BlendOp::subtract});
+    if (random.chance(0.3f))
+      state.blend->color_op =
+          any_of(random, std::array{BlendOp::add, BlendOp::max, BlendOp::min, BlendOp::subtract});
     return state;
   }
   for (bool& write : state.write) write = random.chance(0.8f);
   if (random.chance(0.2f)) return state;
   Blend& blend = state.blend.emplace();
   const auto factor = [&] {
-    return random.chance(0.5f) ? BlendFactor::one
-                               : static_cast<BlendFactor>(random.integer(0, 14));
+    return random.chance(0.5f) ? BlendFactor::one : static_cast<BlendFactor>(random.integer(0, 14));
   };
-  blend = {static_cast<BlendOp>(random.integer(0, 4)), static_cast<BlendOp>(random.integer(0, 4)),
-           factor(), factor(), factor(), factor(), random_color(random, false)};
+  blend = {static_cast<BlendOp>(random.integer(0, 4)),
+           static_cast<BlendOp>(random.integer(0, 4)),
+           factor(),
+           factor(),
+           factor(),
+           factor(),
+           random_color(random, false)};
   return state;
 }
 
@@ -139,7 +146,8 @@ void fill_target(Random& random, ColorBuffer& color) {
         continue;
       }
       glm::vec4& stored = color.rgba32f().at(x, y);
-      for (int c = 0; c < 4; ++c) stored[c] = random.chance(0.1f) ? -0.0f : random.real(-0.1f, 1.0f);
+      for (int c = 0; c < 4; ++c)
+        stored[c] = random.chance(0.1f) ? -0.0f : random.real(-0.1f, 1.0f);
       // Not the NaN that is stored for a result.
       const std::uint32_t nan = 0xffc01234;
       if (random.chance(0.05f)) std::memcpy(&stored.x, &nan, sizeof nan);
@@ -149,16 +157,16 @@ void fill_target(Random& random, ColorBuffer& color) {
 Shading random_shading(Random& random, const std::vector<Buffers>& sets, bool wild) {
   const auto lookup = [&] {
     return random_lookup(
-        random, sets[static_cast<std::size_t>(random.integer(1, static_cast<int>(sets.size()) - 1))]
-                    .depth);
+        random,
+        sets[static_cast<std::size_t>(random.integer(1, static_cast<int>(sets.size()) - 1))].depth);
   };
   if (random.chance(0.7f)) {
     Flat flat{random.chance(0.5f) ? glm::vec4(1.0f) : random_color(random, wild)};
     flat.depth_lookup = lookup();
     flat.depth_texture_mode =
-        random.chance(0.7f) ? DepthTextureMode::luminance
-                            : any_of(random, std::array{DepthTextureMode::alpha,
-                                                        DepthTextureMode::intensity});
+        random.chance(0.7f)
+            ? DepthTextureMode::luminance
+            : any_of(random, std::array{DepthTextureMode::alpha, DepthTextureMode::intensity});
     return flat;
   }
   Lit lit;
@@ -192,8 +200,8 @@ void record(Frame& frame, std::vector<Buffers>& sets, std::uint32_t seed) {
           DepthState{random.chance(0.5f) ? CompareFunc::equal : CompareFunc::less_equal, false};
     if (random.chance(0.1f)) state.depth = DepthState{CompareFunc::greater, true};
     if (random.chance(0.1f))
-      state.stencil = StencilState::both(
-          {.depth_fail = StencilOp::incr_wrap, .pass = StencilOp::incr});
+      state.stencil =
+          StencilState::both({.depth_fail = StencilOp::incr_wrap, .pass = StencilOp::incr});
     if (random.chance(0.2f)) state.scissor = Rect{3, 2, 40, 50};
     record_draw(frame, {.state = state, .shading = random_shading(random, sets, wild)}, triangles);
   }
@@ -204,12 +212,11 @@ void record(Frame& frame, std::vector<Buffers>& sets, std::uint32_t seed) {
 TEST(LookupShading, OfRandomMapsMeshesAndBlendsEqualsTheReference) {
   Grid grid("shading by depth lookups");
   int changed = 0, kept = 0;
-  for (std::uint32_t seed = 0; seed < 240; ++seed) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
     Random random(seed + 5000);
     const Size size = std::array<Size, 3>{{{7, 5}, {63, 65}, {130, 70}}}[seed % 3];
-    std::vector<Buffers> sets{
-        Buffers(size, any_of(random, kDepthFormats),
-                seed / 3 % 2 ? ColorFormat::rgba8 : ColorFormat::rgba32f)};
+    std::vector<Buffers> sets{Buffers(size, any_of(random, kDepthFormats),
+                                      seed / 3 % 2 ? ColorFormat::rgba8 : ColorFormat::rgba32f)};
     fill_target(random, sets[0].color);
     for (int i = random.integer(1, 3); i > 0; --i) {
       sets.emplace_back(any_of(random, kMapSizes), any_of(random, kDepthFormats));
@@ -224,6 +231,6 @@ TEST(LookupShading, OfRandomMapsMeshesAndBlendsEqualsTheReference) {
       for (int x = 0; x < size.width; ++x)
         ++(expected.buffers[0].color.at(x, y) == before.color.at(x, y) ? kept : changed);
   }
-  EXPECT_GT(changed, 80000);
-  EXPECT_GT(kept, 80000);
+  EXPECT_GT(changed, 30000);
+  EXPECT_GT(kept, 30000);
 }

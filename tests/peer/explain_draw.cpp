@@ -90,7 +90,8 @@ class Pixel {
   Pixel(const Draw& draw, const Targets& targets, Driver driver)
       : draw_(draw),
         driver_(driver),
-        setup_(make_fragment_setup(draw, targets, *std::pmr::get_default_resource())),
+        setup_(make_fragment_setup(draw, targets, scalar_kernels(),
+                                   *std::pmr::get_default_resource())),
         source_(to_rgba8(std::get<Flat>(draw.shading).color)) {}
 
   /// Calls reach(state after it, fate) for each outcome.

@@ -161,6 +161,7 @@ void write_color(ColorBuffer& target, int x, int y, const ColorState& state,
       const glm::vec4& k = state.blend->constant;
       value = blended<float>(*state.blend, c, s, d, {k.x, k.y, k.z, k.w}, 1.0f);
     }
+    if (std::isnan(value) && std::isnan(d[c])) continue;
     stored[static_cast<int>(c)] =
         std::isnan(value) ? std::numeric_limits<float>::quiet_NaN() : value;
   }
