@@ -1,13 +1,13 @@
 // Vector kernel: bounds of what a triangle's depth lookups meet, the four rows of the lookup's
 // matrix a lane each.
 //
-// A fragment's position is a sum of corners (a triangle's, or those of a box round some triangles), the weights not negative and of sum
-// 1 up to rounding, so its s, t, r and q lie between those of the corners, and s / q, t / q and r / q
-// between the corners' quotients (q positive). Rounding, with u = 2^-24 and A the sum of a row's
-// |m| |v|: of weights u A, of the position 3.1 u A, of its row 4.1 u A, of a corner's row 4.1 u A;
-// 2^-19 A is more than twice that. A quotient rounds by u and a product by u of itself; 16 u are
-// more. Small constants cover what underflows.
-// Read once for each instruction set, so its guard goes to and fro with Highway's.
+// A fragment's position is a sum of corners (a triangle's, or those of a box round some triangles),
+// the weights not negative and of sum 1 up to rounding, so its s, t, r and q lie between those of
+// the corners, and s / q, t / q and r / q between the corners' quotients (q positive). Rounding,
+// with u = 2^-24 and A the sum of a row's |m| |v|: of weights u A, of the position 3.1 u A, of its
+// row 4.1 u A, of a corner's row 4.1 u A; 2^-19 A is more than twice that. A quotient rounds by u
+// and a product by u of itself; 16 u are more. Small constants cover what underflows. Read once for
+// each instruction set, so its guard goes to and fro with Highway's.
 #if defined(GNOMON_RASTER_LOOKUP_BOUNDS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GNOMON_RASTER_LOOKUP_BOUNDS_INL_H
 #undef GNOMON_RASTER_LOOKUP_BOUNDS_INL_H
@@ -66,15 +66,14 @@ HWY_INLINE bool bound_lookups(const LookupTerms& lookup, const glm::vec4* positi
   const auto moderate = hn::Lt(hn::Max(sizes, largest), huge);
   if (!hn::AllTrue(d, hn::And(moderate, hn::Gt(least_q, zero)))) return false;
   const VRow size = hn::Max(hn::Abs(low), hn::Abs(high));
-  const VRow slack =
-      hn::Add(hn::Div(hn::Add(margin, hn::Mul(size, margin_q)), least_q),
-              hn::Add(hn::Mul(size, hn::Set(d, 0x1p-20f)), hn::Set(d, 1e-30f)));
+  const VRow slack = hn::Add(hn::Div(hn::Add(margin, hn::Mul(size, margin_q)), least_q),
+                             hn::Add(hn::Mul(size, hn::Set(d, 0x1p-20f)), hn::Set(d, 1e-30f)));
   low = hn::Sub(low, slack);
   high = hn::Add(high, slack);
   hn::StoreU(low, d, box.least);
   hn::StoreU(high, d, box.greatest);
-  const float texels[4] = {static_cast<float>(lookup.width), static_cast<float>(lookup.height), 1.0f,
-                           1.0f};
+  const float texels[4] = {static_cast<float>(lookup.width), static_cast<float>(lookup.height),
+                           1.0f, 1.0f};
   const VRow end = hn::LoadU(d, texels), before = hn::Set(d, -1.0f);
   const auto texel = [&](VRow v) HWY_ATTR {
     const VRow near = hn::Min(hn::Max(hn::Mul(v, end), before), end);

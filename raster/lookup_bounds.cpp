@@ -68,7 +68,8 @@ bool zero_keeps(const Draw& draw, const Flat& flat, ColorFormat format) {
   if ((writes_rgb && !rgb_stays) || (state.write[3] && !alpha_stays)) return false;
   // A product of 0 and a float that is negative, infinite or no number is not +0.
   return format == ColorFormat::rgba8 ||
-         (is_small_and_positive(flat.color) && std::ranges::all_of(draw.mesh.colors, is_small_and_positive));
+         (is_small_and_positive(flat.color) &&
+          std::ranges::all_of(draw.mesh.colors, is_small_and_positive));
 }
 
 std::optional<std::array<glm::vec4, 8>> PositionBox::corners() const {

@@ -1,7 +1,7 @@
-// Which triangles a flat colour's depth lookup leaves no mark of, found before they are drawn: those
-// whose comparisons all fail, where a share of 0 leaves the stored colour as it is. The map's texels
-// are known by the least and greatest of each of its 8x8 blocks (as raster/depth_ranges.h has them
-// of targets).
+// Which triangles a flat colour's depth lookup leaves no mark of, found before they are drawn:
+// those whose comparisons all fail, where a share of 0 leaves the stored colour as it is. The map's
+// texels are known by the least and greatest of each of its 8x8 blocks (as raster/depth_ranges.h
+// has them of targets).
 #pragma once
 
 #include <array>

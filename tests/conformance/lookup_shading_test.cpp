@@ -85,7 +85,9 @@ Triangles random_triangles(Random& random, bool wild_colors) {
   std::vector<glm::vec4> sheet;
   for (int y = 0; y <= n; ++y)
     for (int x = 0; x <= n; ++x) {
-      const auto at = [&](int i) { return reach * (2.0f * static_cast<float>(i) / n - 1.0f); };
+      const auto at = [&](int i) {
+        return reach * (2.0f * static_cast<float>(i) / static_cast<float>(n) - 1.0f);
+      };
       const float w = flat ? 1.0f : random.chance(0.02f) ? -0.5f : random.real(1.0f, 1.5f);
       sheet.push_back(glm::vec4(at(x) + random.real(-0.02f, 0.02f),
                                 at(y) + random.real(-0.02f, 0.02f), random.real(-0.3f, 0.5f), 1) *

@@ -105,9 +105,9 @@ TEST(LookupBounds, WhatLeavesNoMarkHasNoFragmentThatPasses) {
 }
 
 TEST(LookupBounds, ABlockWithATexelThatPassesIsMetFromEverySide) {
-  // Closed form: one texel is near, in the block of texels (16, 40) to (23, 47), and a block is what
-  // is known. A triangle 6 texels wide and high that ends half a texel beside it cannot meet it; one
-  // that reaches over its edge by a hundredth of a texel can.
+  // Closed form: one texel is near, in the block of texels (16, 40) to (23, 47), and a block is
+  // what is known. A triangle 6 texels wide and high that ends half a texel beside it cannot meet
+  // it; one that reaches over its edge by a hundredth of a texel can.
   DepthBuffer map(64, 64);
   map.plane().at(17, 40) = 0;
   ColorBuffer color(1, 1);
