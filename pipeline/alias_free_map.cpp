@@ -11,7 +11,9 @@
 // Along a line the mesh's winding number grows by one where it enters and falls by one where it
 // leaves; it is 0 at the eye, so at the visible point and just before its surface, and 0 at the
 // light. So a line between the two that crosses the mesh leaves it as often as it enters. (A light
-// on the other side of the point's surface is another matter: a surface turned from the light.)
+// on the other side of the point's surface is another matter: a surface turned from the light.) A
+// mesh that casts in the place of one that is drawn stops no line of sight: a visible point may be
+// in it, so all of its triangles are taken.
 #include "pipeline/alias_free_map.h"
 
 #include <array>
@@ -148,9 +150,9 @@ class HiddenPoints {
         memory_(memory) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
       if (!casters.contains(*objects[i].object)) continue;
-      const WorldCorners& corners = memory.finder.corners()[i];
-      const bool one_side = objects[i].topology->closed() && outside_bounds(corners, light_) &&
-                            clear_of_the_eye(corners, camera);
+      const WorldCorners& corners = *memory.finder.caster_corners()[i];
+      const bool one_side = objects[i].object->casts_as_drawn() && objects[i].topology->closed() &&
+                            outside_bounds(corners, light_) && clear_of_the_eye(corners, camera);
       const glm::dmat3 world(glm::dmat4(objects[i].object->world_from_model));
       const int away = glm::determinant(world) < 0.0 ? 1 : -1;
       casters_.push_back({&objects[i], &corners, one_side ? away : 0});
@@ -194,7 +196,7 @@ class HiddenPoints {
   bool is_turned_away(const VisiblePoint& point) const {
     if (point.object == VisiblePoint::kNone) return false;
     const Object& object = *objects_[point.object].object;
-    if (!casting_.contains(object) || !object.receives) return false;
+    if (!casting_.contains(object) || !object.casts_as_drawn() || !object.receives) return false;
     const std::vector<glm::dvec3>& at = memory_.finder.corners()[point.object].at;
     const glm::dvec3 &a = at[point.corners[0]], &b = at[point.corners[1]],
                      &c = at[point.corners[2]];
@@ -224,7 +226,7 @@ class HiddenPoints {
   void test_triangles() {
     std::vector<TrianglePiece> pieces;
     for (std::size_t i = 0; i < casters_.size(); ++i) {
-      const std::size_t count = casters_[i].object->topology->triangle_count();
+      const std::size_t count = casters_[i].object->caster_topology->triangle_count();
       for (std::size_t first = 0; first < count; first += kTriangles)
         pieces.push_back({i, first, std::min(count, first + kTriangles)});
     }
@@ -242,7 +244,7 @@ class HiddenPoints {
 
   void test_piece(const TrianglePiece& piece, std::vector<TestPiece>& large) {
     const Caster& caster = casters_[piece.caster];
-    const std::vector<std::uint32_t>& indices = caster.object->topology->indices;
+    const std::vector<std::uint32_t>& indices = caster.object->caster_topology->indices;
     std::vector<PointRange> ranges;
     for (std::size_t t = piece.first; t < piece.last; ++t) {
       std::array<glm::dvec3, 3> corners;

@@ -6,7 +6,8 @@
 // The convention is that of the volumes and of RayReference: a triangle hides a point if it crosses
 // the line from the point to the light, from either side; the visible side of a caster's surface
 // that is turned from the light is hidden by the surface itself; a triangle whose plane the light
-// lies in hides nothing but itself.
+// lies in hides nothing but itself. Of an object in whose place another mesh casts, that mesh's
+// triangles hide, and the visible surface hides nothing.
 //
 // Whether the line passes inside a triangle's edges is decided exactly (pipeline/plane_side.h), so
 // it slips through no seam. Whether the triangle is in front of the point is decided up to what

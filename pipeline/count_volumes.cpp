@@ -17,7 +17,8 @@ raster::Draw counting_draw(const PlacedVolume& volume, const CountOptions& optio
   draw.state.color = raster::ColorState::off();
   draw.state.front_face = volume.front_face;
   draw.state.scissor = volume.window;
-  const bool front_cap = !options.casters_drawn || volume.method != VolumeMethod::zpass;
+  const bool front_cap =
+      !options.casters_drawn || !volume.cap_is_drawn || volume.method != VolumeMethod::zpass;
   draw.mesh = front_cap ? volume.volume->view() : volume.volume->view_without_front_cap();
   draw.clip_from_model = volume.clip_from_model;
   draw.label = "volume of " + volume.caster->name;

@@ -24,7 +24,8 @@ struct CountOptions {
   bool single_sided = false;
   /// Stencil bits that count.
   std::uint8_t write_mask = 0xff;
-  /// All casters are in the depth buffer: front caps of z-pass volumes are left out.
+  /// All casters are in the depth buffer: front caps of z-pass volumes are left out, where they
+  /// coincide with what was drawn (PlacedVolume::cap_is_drawn).
   bool casters_drawn = false;
   /// Added to each draw's label.
   std::string light_name;

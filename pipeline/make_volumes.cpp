@@ -7,7 +7,8 @@
 // surface in the same pixel. Where the caster was drawn with depth LESS and write, and nothing has
 // raised the buffer since, the buffer holds at most that: the fragment fails, and the cap counts
 // nowhere. This does not hold for a caster that is not in the buffer when its volume is counted
-// (Haller's second step counts virtual objects' volumes on phantoms alone): there the cap stays.
+// (Haller's second step counts virtual objects' volumes on phantoms alone), nor for one in whose
+// place another mesh is drawn (Object::shadow_model): there the cap stays.
 //
 // Back cap at infinity. With a far plane, finite or infinite, what is at infinity has a depth that
 // is clamped to 1, the largest; nothing in the buffer is larger, so no fragment passes LESS. The
@@ -57,7 +58,8 @@ Sweep sweep_of(const Extrusion& extrusion, const std::optional<Reach>& reach) {
 Caps caps_for(const PlacedObject& object, VolumeMethod method, const Sweep& sweep,
               const VolumeOptions& options) {
   if (options.all_caps || method != VolumeMethod::zpass) return {};
-  return {.front = object.object->role == options.counted_before_drawn,
+  return {.front = object.object->role == options.counted_before_drawn ||
+                   !object.object->casts_as_drawn(),
           .back = sweep.kind != Sweep::Kind::infinite};
 }
 
@@ -73,7 +75,7 @@ class Maker {
   /// for silhouettes.
   void make(const PlacedObject& object, const DegenerateQuads* quads, VolumeMemory::Worker& worker,
             std::shared_ptr<ShadowVolume> volume, PlacedVolume& placed) const {
-    const Topology& topology = *object.topology;
+    const Topology& topology = *object.caster_topology;
     const glm::mat4& world_from_model = object.object->world_from_model;
     const glm::dvec4 light_model = light_in_model(light_.position, world_from_model);
     placed.method =
@@ -103,12 +105,13 @@ class Maker {
     placed.caster = object.object;
     placed.clip_from_model = object.clip_from_model;
     placed.front_face = object.front_face;
+    placed.cap_is_drawn = object.object->casts_as_drawn();
   }
 
  private:
   /// False: the volume is not needed.
   bool find_window(const PlacedObject& object, PlacedVolume& placed) const {
-    const Topology& topology = *object.topology;
+    const Topology& topology = *object.caster_topology;
     const glm::mat4& world_from_model = object.object->world_from_model;
     // Depth pass with the eye in a volume counts wrongly, and everywhere; so does the plain method.
     const bool sound =
@@ -124,7 +127,7 @@ class Maker {
 
   static void extrude(const PlacedObject& object, const glm::dvec4& light_model, const Sweep& sweep,
                       Caps caps, VolumeMemory::Worker& worker, ShadowVolume& volume) {
-    const Topology& topology = *object.topology;
+    const Topology& topology = *object.caster_topology;
     const Silhouette& silhouette = worker.silhouette;
     switch (sweep.kind) {
       case Sweep::Kind::radius:
@@ -145,7 +148,8 @@ class Maker {
                           const glm::dvec4& light_model, const Sweep& sweep,
                           VolumeMemory::Worker& worker, ShadowVolume& volume) {
     const auto to = [&](const auto& far_of) {
-      displace(quads, *object.topology, worker.silhouette.casting, far_of, worker.far, volume);
+      displace(quads, *object.caster_topology, worker.silhouette.casting, far_of, worker.far,
+               volume);
     };
     if (sweep.kind == Sweep::Kind::infinite)
       to(swept_to_infinity(light_model));
@@ -221,8 +225,8 @@ std::vector<PlacedVolume> make_volumes(std::span<const PlacedObject> objects, co
   for (std::size_t i = 0; extends && i < casters.size(); ++i) {
     const glm::dvec4 light_model =
         light_in_model(light.position, casters[i]->object->world_from_model);
-    quads[i] =
-        memory.quads(casters[i]->topology, casts_both_sides(*casters[i]->topology, light_model));
+    const std::shared_ptr<const Topology>& topology = casters[i]->caster_topology;
+    quads[i] = memory.quads(topology, casts_both_sides(*topology, light_model));
   }
   const Maker maker(objects, light, receivers, region, options);
   raster::for_each_chunk(casters.size(), kChunk, options.threads,

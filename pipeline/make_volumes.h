@@ -38,6 +38,9 @@ struct PlacedVolume {
   raster::FrontFace front_face = raster::FrontFace::ccw;
   /// zpass or zfail.
   VolumeMethod method = VolumeMethod::zfail;
+  /// The front cap coincides with the caster's surface as it is drawn; so where that is in the
+  /// depth buffer, z-pass counts nothing of the cap.
+  bool cap_is_drawn = true;
   /// What the automatic extrusion took; absent for the others.
   std::optional<Reach> reach;
   /// The counts' scissor; absent: the whole target.
@@ -107,7 +110,8 @@ struct VolumeOptions {
   /// Of volumes that are not classical.
   VolumeGeometry geometry = VolumeGeometry::silhouettes;
   /// Casters of this role are counted also where they are not in the depth buffer, so their volumes
-  /// keep the front cap. All others must be in it, drawn with surface_state and their PlacedObject.
+  /// keep the front cap; so do those of casters that are not what is drawn (Object::shadow_model).
+  /// All others must be in it, drawn with surface_state and their PlacedObject.
   std::optional<Role> counted_before_drawn = {};
   Counts counts = Counts::everywhere;
   /// What is drawn, for Counts::at_receivers, whose receivers are those of the objects given;

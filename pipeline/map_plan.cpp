@@ -63,12 +63,12 @@ std::array<HalfSpace, 5> view_of(const Camera& camera) {
   return halves;
 }
 
-/// Calls body(a, b, c) with the world corners of each triangle of an object whose corners are
+/// Calls body(a, b, c) with the world corners of each of a model's triangles whose corners are
 /// finite.
 template <class Body>
-void for_each_triangle(const Object& object, Body body) {
-  const glm::dmat4 world(object.world_from_model);
-  for (const Part& part : object.model->parts) {
+void for_each_triangle(const Model& model, const glm::mat4& world_from_model, Body body) {
+  const glm::dmat4 world(world_from_model);
+  for (const Part& part : model.parts) {
     const Mesh& mesh = part.mesh;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
       const auto corner = [&](std::size_t k) {
@@ -87,7 +87,7 @@ void for_each_caster(const Scene& scene, const Casters& casters, std::span<const
   Polygon polygon, scratch;
   for (const Object& object : scene.objects) {
     if (!casters.contains(object)) continue;
-    for_each_triangle(object, [&](const auto&... corners) {
+    for_each_triangle(*object.caster(), object.world_from_model, [&](const auto&... corners) {
       polygon.assign({corners...});
       if (!region.empty()) clip(polygon, region, scratch);
       if (!polygon.empty()) body(polygon);
@@ -103,7 +103,7 @@ std::vector<Polygon> visible_receivers(const Scene& scene, const Camera& camera,
   Polygon scratch;
   for (const Object& object : scene.objects) {
     if (!object.receives) continue;
-    for_each_triangle(object, [&](const auto&... corners) {
+    for_each_triangle(*object.model, object.world_from_model, [&](const auto&... corners) {
       Polygon polygon{corners...};
       clip(polygon, view, scratch);
       clip(polygon, region, scratch);

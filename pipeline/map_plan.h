@@ -45,7 +45,7 @@ class MapPlanner {
  public:
   /// Errors (std::invalid_argument, as raster::require): a size out of 1 to 16384, a tangent that
   /// is not positive, a near plane that is not before the far one.
-  /// Precondition: every object has a model whose indices name its positions.
+  /// Precondition: every object has a model; its indices, and its shadow model's, name positions.
   MapPlanner(const Scene& scene, const Casters& casters, const Light& light, const Camera& camera,
              const MapSettings& settings);
 

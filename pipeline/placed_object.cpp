@@ -45,6 +45,22 @@ raster::FrontFace front_face_of(const glm::mat4& clip_from_model) {
   return determinant > 0.0 ? raster::FrontFace::cw : raster::FrontFace::ccw;
 }
 
+void draw_depth_of(raster::Frame& frame, std::span<const std::shared_ptr<const Mesh>> meshes,
+                   const PlacedObject& object, const raster::State& state, int stencil_ref) {
+  for (const std::shared_ptr<const Mesh>& mesh : meshes) {
+    raster::Draw draw;
+    draw.state = state;
+    draw.state.front_face = object.front_face;
+    draw.state.color = raster::ColorState::off();
+    draw.mesh = {.positions = mesh->positions, .indices = mesh->indices};
+    draw.clip_from_model = object.clip_from_model;
+    draw.stencil_ref = stencil_ref;
+    draw.label = object.object->name;
+    frame.keep(mesh);
+    frame.draw(std::move(draw));
+  }
+}
+
 raster::Light raster_light(const Light& light) {
   return {.position = light.position,
           .diffuse = light.color,
@@ -67,10 +83,17 @@ std::vector<PlacedObject> place_objects(const Scene& scene, const Camera& camera
     item.object = &object;
     // Before the rest: it checks the indices that everything below relies on.
     item.topology = topologies.of(object.model);
+    item.caster_topology = topologies.of(object.caster());
     for (const Part& part : object.model->parts) {
       const bool has_normals = part.mesh.normals.size() == part.mesh.positions.size();
       item.meshes.push_back(has_normals ? std::shared_ptr<const Mesh>(object.model, &part.mesh)
                                         : flat_shaded(part.mesh));
+    }
+    if (object.casts_as_drawn()) {
+      item.caster_meshes = item.meshes;
+    } else {
+      for (const Part& part : object.shadow_model->parts)
+        item.caster_meshes.emplace_back(object.shadow_model, &part.mesh);
     }
     const glm::mat3 linear(object.world_from_model);
     const float determinant = glm::determinant(linear);
@@ -92,18 +115,12 @@ raster::State surface_state() {
 
 void draw_depth(raster::Frame& frame, const PlacedObject& object, const raster::State& state,
                 int stencil_ref) {
-  for (const std::shared_ptr<const Mesh>& mesh : object.meshes) {
-    raster::Draw draw;
-    draw.state = state;
-    draw.state.front_face = object.front_face;
-    draw.state.color = raster::ColorState::off();
-    draw.mesh = {.positions = mesh->positions, .indices = mesh->indices};
-    draw.clip_from_model = object.clip_from_model;
-    draw.stencil_ref = stencil_ref;
-    draw.label = object.object->name;
-    frame.keep(mesh);
-    frame.draw(std::move(draw));
-  }
+  draw_depth_of(frame, object.meshes, object, state, stencil_ref);
+}
+
+void draw_caster_depth(raster::Frame& frame, const PlacedObject& object,
+                       const raster::State& state) {
+  draw_depth_of(frame, object.caster_meshes, object, state, 0);
 }
 
 void draw_lit(raster::Frame& frame, const PlacedObject& object, const Scene& scene,

@@ -2,7 +2,8 @@
 // Invariant: clip_from_model = clip_from_world * world_from_model is computed here, once an object
 // and frame, and serves the object's surface and its shadow volumes alike; all are drawn with depth
 // clamp, so that no near or far plane cuts one and not the other. Hence a front cap has the depth
-// bits of the surface that it lies on, and depth EQUAL finds the visible fragments again.
+// bits of the surface that it lies on, and depth EQUAL finds the visible fragments again. Of an
+// object that casts as drawn (Object::casts_as_drawn), that surface is in the depth buffer.
 #pragma once
 
 #include <memory>
@@ -21,10 +22,13 @@ namespace gnomon::pipeline {
 
 struct PlacedObject {
   const Object* object = nullptr;
-  std::shared_ptr<const Topology> topology;
+  /// Of what is drawn, and of what casts: the same one if the object casts as drawn.
+  std::shared_ptr<const Topology> topology, caster_topology;
   /// One a part, with normals: the model's own mesh or, where that has none, a flat-shaded copy of
   /// the same positions.
   std::vector<std::shared_ptr<const Mesh>> meshes;
+  /// What casts, for draws without colour; `meshes` if the object casts as drawn.
+  std::vector<std::shared_ptr<const Mesh>> caster_meshes;
   glm::mat4 clip_from_model{1.0f};
   glm::mat3 world_from_model_normal{1.0f};
   /// Counter-clockwise from outside in the model, or (a mirroring transform) clockwise?
@@ -50,9 +54,13 @@ struct LightTerms {
   std::span<const std::optional<raster::DepthLookup>> shadow_maps = {};
 };
 
-/// Records the object's parts without colour.
+/// Records the parts of what is drawn without colour.
 void draw_depth(raster::Frame& frame, const PlacedObject& object, const raster::State& state,
                 int stencil_ref = 0);
+
+/// The same of what casts.
+void draw_caster_depth(raster::Frame& frame, const PlacedObject& object,
+                       const raster::State& state);
 
 /// Records the object's parts with lighting; the material's alpha counts as 1. The frame keeps the
 /// meshes.

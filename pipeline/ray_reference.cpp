@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include <embree3/rtcore.h>
@@ -19,30 +20,44 @@ namespace {
 /// coordinates' size: Embree's float32 triangles are off by about a tenth of this.
 constexpr double kLift = 2e-6;
 
-struct Body {
+struct Triangles {
   /// World-space corners, exactly those that Embree has (float32).
   std::vector<glm::vec3> corners;
   std::vector<std::uint32_t> indices;
+};
+
+struct Body {
+  Triangles seen;
+  /// Where what casts is not what is seen.
+  std::optional<Triangles> caster;
   bool casts = true;
   Role role = Role::virtual_object;
 };
 
-Body make_body(const Object& object) {
-  raster::require(object.model != nullptr, "an object has a model");
-  Body body;
-  body.casts = object.casts;
-  body.role = object.role;
-  const glm::dmat4 world(object.world_from_model);
-  for (const Part& part : object.model->parts) {
+Triangles triangles_of(const Model& model, const glm::mat4& world_from_model) {
+  Triangles triangles;
+  const glm::dmat4 world(world_from_model);
+  for (const Part& part : model.parts) {
     raster::require(part.mesh.indices.size() % 3 == 0, "a mesh has three indices a triangle");
     for (const std::uint32_t index : part.mesh.indices) {
       raster::require(index < part.mesh.positions.size(),
                       "a mesh's index names one of its positions");
       const glm::vec4& p = part.mesh.positions[index];
-      body.indices.push_back(static_cast<std::uint32_t>(body.indices.size()));
-      body.corners.emplace_back(glm::vec3(world * glm::dvec4(p)));
+      triangles.indices.push_back(static_cast<std::uint32_t>(triangles.indices.size()));
+      triangles.corners.emplace_back(glm::vec3(world * glm::dvec4(p)));
     }
   }
+  return triangles;
+}
+
+Body make_body(const Object& object) {
+  raster::require(object.model != nullptr, "an object has a model");
+  Body body{.seen = triangles_of(*object.model, object.world_from_model),
+            .caster = {},
+            .casts = object.casts,
+            .role = object.role};
+  if (!object.casts_as_drawn())
+    body.caster = triangles_of(*object.shadow_model, object.world_from_model);
   return body;
 }
 
@@ -96,20 +111,22 @@ struct RayReference::World {
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const Body& body = bodies[i];
-      if (!belongs(body, among) || (casters_only && !body.casts) || body.indices.empty()) continue;
+      const Triangles& triangles = casters_only && body.caster ? *body.caster : body.seen;
+      if (!belongs(body, among) || (casters_only && !body.casts) || triangles.indices.empty())
+        continue;
       RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
       auto* corners = static_cast<float*>(
           rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                  3 * sizeof(float), body.corners.size()));
+                                  3 * sizeof(float), triangles.corners.size()));
       auto* indices = static_cast<std::uint32_t*>(
           rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                  3 * sizeof(std::uint32_t), body.indices.size() / 3));
-      for (const glm::vec3& p : body.corners) {
+                                  3 * sizeof(std::uint32_t), triangles.indices.size() / 3));
+      for (const glm::vec3& p : triangles.corners) {
         *corners++ = p.x;
         *corners++ = p.y;
         *corners++ = p.z;
       }
-      std::copy(body.indices.begin(), body.indices.end(), indices);
+      std::copy(triangles.indices.begin(), triangles.indices.end(), indices);
       rtcCommitGeometry(geometry);
       rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(i));
       rtcReleaseGeometry(geometry);
@@ -133,9 +150,9 @@ RayHit RayReference::trace(const Ray& ray, Among visible) const {
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return result;
   result.hit = true;
   result.object = query.hit.geomID;
-  const Body& body = world_->bodies[result.object];
-  const std::uint32_t* index = &body.indices[3 * static_cast<std::size_t>(query.hit.primID)];
-  const glm::dvec3 a(body.corners[index[0]]), b(body.corners[index[1]]), c(body.corners[index[2]]);
+  const Triangles& seen = world_->bodies[result.object].seen;
+  const std::uint32_t* index = &seen.indices[3 * static_cast<std::size_t>(query.hit.primID)];
+  const glm::dvec3 a(seen.corners[index[0]]), b(seen.corners[index[1]]), c(seen.corners[index[2]]);
   result.normal = glm::normalize(glm::cross(b - a, c - a));
   if (glm::dot(result.normal, ray.direction) > 0.0) result.normal = -result.normal;
   // Again in double: Embree's own distance has float32's rounding.
@@ -163,11 +180,11 @@ RayShadow RayReference::shadow(const RayHit& hit, const glm::vec4& light, Among 
   const glm::dvec3 towards = light.w == 0.0f ? glm::dvec3(light) : glm::dvec3(light) - hit.point;
   result.faces_away = glm::dot(hit.normal, towards) <= 0.0;
   const Body& body = world_->bodies[hit.object];
-  const bool own_shadow = result.faces_away && body.casts && belongs(body, casters);
+  const bool own_shadow = result.faces_away && body.casts && !body.caster && belongs(body, casters);
   const double size =
       std::max({1.0, std::abs(hit.point.x), std::abs(hit.point.y), std::abs(hit.point.z)});
-  const glm::dvec3 light_side = result.faces_away ? -hit.normal : hit.normal;
-  result.blocked = blocked(hit.point + light_side * (kLift * size), light, casters);
+  const glm::dvec3 side = result.faces_away && !body.caster ? -hit.normal : hit.normal;
+  result.blocked = blocked(hit.point + side * (kLift * size), light, casters);
   result.in_shadow = result.blocked || own_shadow;
   return result;
 }

@@ -3,7 +3,9 @@
 // buffers, and of no camera: it takes rays, so it serves a lens of any shape.
 // What counts as shadow: a caster's triangle, from either side, lies between the point and the
 // light; or the side of a caster's surface that is seen is turned away from the light, so that the
-// surface itself is in between.
+// surface itself is in between. What casts is Object::caster(): of an object in whose place another
+// mesh casts, the surface that is seen hides nothing, and a point of it is in shadow if that mesh
+// is in between. Where the two coincide, the point lies on the side that is seen.
 #pragma once
 
 #include <cstddef>
@@ -42,7 +44,8 @@ struct RayShadow {
   bool in_shadow = false;
   /// The side that is seen is turned away from the light (n.l <= 0).
   bool faces_away = false;
-  /// Something stands between the light and the surface's side that faces it.
+  /// Something stands between the light and the surface's side that faces it (the side that is
+  /// seen, of a surface that does not cast itself because another mesh does).
   bool blocked = false;
 };
 

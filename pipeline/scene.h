@@ -25,6 +25,15 @@ struct Object {
   std::shared_ptr<const Model> model;
   glm::mat4 world_from_model{1.0f};
   bool casts = true, receives = true;
+  /// A mesh in the model's own space that casts in its place (a reduced one); the model is drawn
+  /// and receives. Null: the model casts itself. Where the two differ, the model is in the shadow
+  /// of what it is not (docs/kuehl.md).
+  std::shared_ptr<const Model> shadow_model = nullptr;
+
+  /// What casts.
+  const std::shared_ptr<const Model>& caster() const { return shadow_model ? shadow_model : model; }
+  /// Is what casts what is drawn?
+  bool casts_as_drawn() const { return caster() == model; }
 };
 
 /// What finds a light's shadows in the general method (pipeline/general_method.h).

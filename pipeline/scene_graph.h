@@ -26,6 +26,8 @@ struct Geometry {
   std::shared_ptr<const Model> model;
   Role role = Role::virtual_object;
   bool casts = true, receives = true;
+  /// As Object::shadow_model.
+  std::shared_ptr<const Model> shadow_model = nullptr;
 };
 
 /// A light and its beam in the node's own space; its radius stays in metres of the world. Its

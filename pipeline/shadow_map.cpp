@@ -22,12 +22,13 @@ std::optional<Rectangle> beam_of(const Light& light) {
 
 /// With the light inside, the averted faces are the ones that are seen.
 bool is_thick(const PlacedObject& object, const glm::vec4& light, double texel_m) {
-  if (casts_both_sides(*object.topology, light_in_model(light, object.object->world_from_model)))
+  const Topology& caster = *object.caster_topology;
+  if (casts_both_sides(caster, light_in_model(light, object.object->world_from_model)))
     return false;
   const glm::dmat3 world(object.object->world_from_model);
   const double scale =
       std::min({glm::length(world[0]), glm::length(world[1]), glm::length(world[2])});
-  return object.topology->thickness * scale >= 2.0 * texel_m;
+  return caster.thickness * scale >= 2.0 * texel_m;
 }
 
 }  // namespace
@@ -69,13 +70,13 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
     if (!casters.contains(*object.object)) continue;
     // What of a closed body is turned from the light hides the same points, and never the lit side.
     // The map mirrors (LightView), so that side is the one that is in front here.
-    const bool averted = object.topology->faults.closed_manifold();
+    const bool averted = object.caster_topology->faults.closed_manifold();
     state.cull = averted ? raster::Cull::back : raster::Cull::none;
     state.polygon_offset =
         averted && is_thick(object, plan.light, plan.texel_m) ? plan.offset_of_thick : plan.offset;
     PlacedObject seen = object;
     seen.clip_from_model = plan.clip_from_world * object.object->world_from_model;
-    draw_depth(frame, seen, state);
+    draw_caster_depth(frame, seen, state);
   }
   // From [-1, 1] to [0, 1], and to [0, kMapDepthFar].
   const auto half_depth = static_cast<float>(0.5 * kMapDepthFar);

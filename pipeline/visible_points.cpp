@@ -49,9 +49,9 @@ std::uint32_t digit(float value) {
                                                                : 0;
 }
 
-void place_corners(const PlacedObject& object, int threads, WorldCorners& corners) {
-  const Topology& topology = *object.topology;
-  const glm::dmat4 world(object.object->world_from_model);
+void place_corners(const Topology& topology, const glm::mat4& world_from_model, int threads,
+                   WorldCorners& corners) {
+  const glm::dmat4 world(world_from_model);
   corners.at.resize(topology.positions.size());
   raster::for_each_chunk(
       corners.at.size(), kChunk, threads, [&](std::size_t first, std::size_t last) {
@@ -172,13 +172,27 @@ VisiblePoint PointFinder::point_at(std::span<const PlacedObject> objects,
   return point;
 }
 
+void PointFinder::place_all_corners(std::span<const PlacedObject> objects, int threads) {
+  corners_.resize(objects.size());
+  shadow_corners_.resize(objects.size());
+  caster_corners_.resize(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const PlacedObject& object = objects[i];
+    const glm::mat4& world_from_model = object.object->world_from_model;
+    place_corners(*object.topology, world_from_model, threads, corners_[i]);
+    caster_corners_[i] = &corners_[i];
+    if (object.object->casts_as_drawn()) continue;
+    place_corners(*object.caster_topology, world_from_model, threads, shadow_corners_[i]);
+    caster_corners_[i] = &shadow_corners_[i];
+  }
+}
+
 void PointFinder::find(std::span<const PlacedObject> objects, const Camera& camera, int width,
                        int height, raster::DepthFormat format, int threads) {
   width_ = width;
   height_ = height;
   draw_numbers(objects, format, threads);
-  corners_.resize(objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) place_corners(objects[i], threads, corners_[i]);
+  place_all_corners(objects, threads);
   points_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const glm::dmat4 clip_from_world(camera.clip_from_world);
   const glm::dvec4 eye = eye_of(camera.clip_from_world);

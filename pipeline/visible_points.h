@@ -26,7 +26,7 @@
 
 namespace gnomon::pipeline {
 
-/// An object's corners in the world, one a position of its topology. Those of its triangles are
+/// A mesh's corners in the world, one a position of its topology. Those of its triangles are
 /// finite.
 struct WorldCorners {
   std::vector<glm::dvec3> at;
@@ -57,13 +57,16 @@ struct VisiblePoint {
 class PointFinder {
  public:
   /// One a pixel of a target of that size and depth format, row after row from the bottom row, and
-  /// one WorldCorners an object. Both are valid until the next call.
+  /// the WorldCorners of each object and of what casts in its place. All are valid until the next
+  /// call.
   /// Preconditions: `objects` are placed for `camera`; fewer than 65536 parts in all.
   void find(std::span<const PlacedObject> objects, const Camera& camera, int width, int height,
             raster::DepthFormat format, int threads);
 
   std::span<const VisiblePoint> points() const { return points_; }
   std::span<const WorldCorners> corners() const { return corners_; }
+  /// One an object; of one that casts as drawn, those of `corners`.
+  std::span<const WorldCorners* const> caster_corners() const { return caster_corners_; }
 
  private:
   struct NumberedModel {
@@ -78,6 +81,7 @@ class PointFinder {
 
   const NumberedModel& numbered(const std::shared_ptr<const Model>& model);
   void draw_numbers(std::span<const PlacedObject> objects, raster::DepthFormat format, int threads);
+  void place_all_corners(std::span<const PlacedObject> objects, int threads);
   VisiblePoint point_at(std::span<const PlacedObject> objects, const glm::dmat4& clip_from_world,
                         const glm::dvec4& eye, int x, int y) const;
 
@@ -87,7 +91,8 @@ class PointFinder {
   std::unique_ptr<raster::ColorBuffer> numbers_;
   std::unique_ptr<raster::DepthBuffer> depth_;
   raster::ExecuteMemory executing_;
-  std::vector<WorldCorners> corners_;
+  std::vector<WorldCorners> corners_, shadow_corners_;
+  std::vector<const WorldCorners*> caster_corners_;
   std::vector<VisiblePoint> points_;
 };
 

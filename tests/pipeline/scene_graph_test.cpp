@@ -132,6 +132,29 @@ TEST(SceneGraph, ANodeThatHangsTwiceIsThereTwice) {
 }
 
 // Oracle: the same scene built at the new place.
+// Oracle: the graph whose group was built where the other one has moved to; byte for byte.
+TEST(SceneGraph, AGeometrysShadowModelCastsInItsPlaceAndMovesWithIt) {
+  const auto reduced = test::model_of(test::icosphere_mesh(0.3f, 0));
+  for (const ShadowMethod method :
+       {ShadowMethod::volumes, ShadowMethod::map, ShadowMethod::alias_free}) {
+    Graph graph, elsewhere;
+    for (Graph* each : {&graph, &elsewhere}) {
+      each->root->children.push_back(shadow(each->group, nullptr, method));
+      std::get<Geometry>(each->ball->content).shadow_model = reduced;
+    }
+    EXPECT_EQ(flatten(*graph.root).objects[2].shadow_model, reduced);
+    EXPECT_TRUE(flatten(*graph.root).objects[1].casts_as_drawn());
+    const auto before = picture_of(flatten(*graph.root)).to_rgba8_rows();
+    graph.group->parent_from_node[3] += glm::dvec4(0.5, 0.25, 0.5, 0.0);
+    elsewhere.group->parent_from_node = glm::translate(glm::dmat4(1.0), {0.5, 1.25, 0.5});
+    const auto moved = picture_of(flatten(*graph.root)).to_rgba8_rows();
+    EXPECT_EQ(moved, picture_of(flatten(*elsewhere.root)).to_rgba8_rows());
+    EXPECT_NE(moved, before);
+    std::get<Geometry>(graph.ball->content).shadow_model = nullptr;
+    EXPECT_NE(moved, picture_of(flatten(*graph.root)).to_rgba8_rows());
+  }
+}
+
 TEST(SceneGraph, MovingATransformMovesTheShadow) {
   for (const ShadowMethod method : {ShadowMethod::volumes, ShadowMethod::map}) {
     Graph graph, elsewhere;

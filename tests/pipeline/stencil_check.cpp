@@ -124,13 +124,15 @@ bool ties_with_the_next_surface(const RayReference& rays, const Camera& camera, 
          rays.blocked(hit.point + along * (0.5 * gap), light) == counted_shadow;
 }
 
-/// Do the rays say what the stencil says when the visible point moves towards the viewer (never
-/// into its own body) by no more than that?
-bool is_depth_tie(const RayReference& rays, const Camera& camera, const RayHit& hit,
-                  const glm::vec4& light, bool counted_shadow) {
+/// Do the rays say what the stencil says when the visible point moves towards the viewer by no more
+/// than that? Never into its own body, but into another mesh that casts in its place: of two
+/// triangles in one plane that have other corners, either may come out in front.
+bool is_depth_tie(const RayReference& rays, const Camera& camera, const Object& object,
+                  const RayHit& hit, const glm::vec4& light, bool counted_shadow) {
   const double step = scales_at(camera, hit).tie_m;
   const glm::dvec3 back = glm::normalize(glm::dvec3(camera.eye_world) - hit.point);
-  for (const double move : {0.25, 0.5, 1.0}) {
+  for (const double move : {0.25, 0.5, 1.0, -0.25, -0.5, -1.0}) {
+    if (move < 0.0 && object.casts_as_drawn()) break;
     if (rays.blocked(hit.point + back * (move * step), light) == counted_shadow) return true;
   }
   return false;
@@ -182,8 +184,9 @@ Reason why(const Scene& scene, const RayReference& rays, const Camera& camera,
       (drawn && hit.hit && object_edge_within(scene.objects[hit.object], camera, x, y, kSnap))) {
     return Reason::edge;
   }
-  if (hit.hit && (is_depth_tie(rays, camera, hit, light, counted_shadow) ||
-                  ties_with_the_next_surface(rays, camera, hit, light, counted_shadow)))
+  if (hit.hit &&
+      (is_depth_tie(rays, camera, scene.objects[hit.object], hit, light, counted_shadow) ||
+       ties_with_the_next_surface(rays, camera, hit, light, counted_shadow)))
     return Reason::depth_tie;
   return Reason::none;
 }
