@@ -26,6 +26,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "pipeline/displaced_caster.h"
 #include "pipeline/plane_side.h"
 #include "pipeline/silhouette.h"
 #include "raster/check.h"
@@ -148,9 +149,14 @@ class HiddenPoints {
         light_(light.position),
         threads_(threads),
         memory_(memory) {
+    memory.shadow_corners.resize(objects.size());
     for (std::size_t i = 0; i < objects.size(); ++i) {
       if (!casters.contains(*objects[i].object)) continue;
-      const WorldCorners& corners = *memory.finder.caster_corners()[i];
+      if (!objects[i].object->casts_as_drawn())
+        place_corners(*caster_for(objects[i], light.position), objects[i].object->world_from_model,
+                      threads, memory.shadow_corners[i]);
+      const WorldCorners& corners = objects[i].object->casts_as_drawn() ? memory.finder.corners()[i]
+                                                                        : memory.shadow_corners[i];
       const bool one_side = objects[i].object->casts_as_drawn() && objects[i].topology->closed() &&
                             outside_bounds(corners, light_) && clear_of_the_eye(corners, camera);
       const glm::dmat3 world(glm::dmat4(objects[i].object->world_from_model));

@@ -34,6 +34,8 @@ namespace gnomon::pipeline {
 struct AliasFreeMemory {
   PointFinder finder;
   LightGrid grid;
+  /// Of what casts in the place of an object, which the light may have moved; one an object.
+  std::vector<WorldCorners> shadow_corners;
   /// Of the points to be tested: their pixels, and where they are.
   std::vector<std::uint32_t> pixels;
   std::vector<glm::dvec3> points;

@@ -18,6 +18,7 @@
 
 #include <utility>
 
+#include "pipeline/displaced_caster.h"
 #include "pipeline/swept_point.h"
 #include "raster/check.h"
 #include "raster/executor.h"
@@ -75,12 +76,13 @@ class Maker {
   /// for silhouettes.
   void make(const PlacedObject& object, const DegenerateQuads* quads, VolumeMemory::Worker& worker,
             std::shared_ptr<ShadowVolume> volume, PlacedVolume& placed) const {
-    const Topology& topology = *object.caster_topology;
+    const std::shared_ptr<const Topology> caster = caster_for(object, light_.position);
+    const Topology& topology = *caster;
     const glm::mat4& world_from_model = object.object->world_from_model;
     const glm::dvec4 light_model = light_in_model(light_.position, world_from_model);
     placed.method =
         choose_method(options_.method, region_, light_.position, topology, world_from_model);
-    if (in_view_ && !find_window(object, placed)) return;
+    if (in_view_ && !find_window(topology, world_from_model, placed)) return;
     Silhouette& silhouette = worker.silhouette;
     if (quads)
       find_casting(topology, light_model, quads->both_sides, silhouette.casting);
@@ -95,10 +97,10 @@ class Maker {
     const Sweep sweep = sweep_of(options_.extrusion, placed.reach);
     if (sweep.kind == Sweep::Kind::nowhere) return;
     if (quads) {
-      sweep_quads(*quads, object, light_model, sweep, worker, *volume);
+      sweep_quads(*quads, topology, world_from_model, light_model, sweep, worker, *volume);
     } else {
       const Caps caps = caps_for(object, placed.method, sweep, options_);
-      extrude(object, light_model, sweep, caps, worker, *volume);
+      extrude(topology, world_from_model, light_model, sweep, caps, worker, *volume);
     }
     if (volume->empty()) return;
     placed.volume = std::move(volume);
@@ -110,9 +112,8 @@ class Maker {
 
  private:
   /// False: the volume is not needed.
-  bool find_window(const PlacedObject& object, PlacedVolume& placed) const {
-    const Topology& topology = *object.caster_topology;
-    const glm::mat4& world_from_model = object.object->world_from_model;
+  bool find_window(const Topology& topology, const glm::mat4& world_from_model,
+                   PlacedVolume& placed) const {
     // Depth pass with the eye in a volume counts wrongly, and everywhere; so does the plain method.
     const bool sound =
         placed.method != VolumeMethod::zpass || options_.method == VolumeMethod::automatic ||
@@ -125,15 +126,14 @@ class Maker {
     return true;
   }
 
-  static void extrude(const PlacedObject& object, const glm::dvec4& light_model, const Sweep& sweep,
-                      Caps caps, VolumeMemory::Worker& worker, ShadowVolume& volume) {
-    const Topology& topology = *object.caster_topology;
+  static void extrude(const Topology& topology, const glm::mat4& world_from_model,
+                      const glm::dvec4& light_model, const Sweep& sweep, Caps caps,
+                      VolumeMemory::Worker& worker, ShadowVolume& volume) {
     const Silhouette& silhouette = worker.silhouette;
     switch (sweep.kind) {
       case Sweep::Kind::radius:
-        worker.builder.extrude_by_radius(topology, silhouette, light_model,
-                                         object.object->world_from_model, sweep.amount, caps,
-                                         volume);
+        worker.builder.extrude_by_radius(topology, silhouette, light_model, world_from_model,
+                                         sweep.amount, caps, volume);
         break;
       case Sweep::Kind::amount:
         worker.builder.extrude_by(topology, silhouette, light_model, sweep.amount, caps, volume);
@@ -144,19 +144,18 @@ class Maker {
     }
   }
 
-  static void sweep_quads(const DegenerateQuads& quads, const PlacedObject& object,
-                          const glm::dvec4& light_model, const Sweep& sweep,
-                          VolumeMemory::Worker& worker, ShadowVolume& volume) {
+  static void sweep_quads(const DegenerateQuads& quads, const Topology& topology,
+                          const glm::mat4& world_from_model, const glm::dvec4& light_model,
+                          const Sweep& sweep, VolumeMemory::Worker& worker, ShadowVolume& volume) {
     const auto to = [&](const auto& far_of) {
-      displace(quads, *object.caster_topology, worker.silhouette.casting, far_of, worker.far,
-               volume);
+      displace(quads, topology, worker.silhouette.casting, far_of, worker.far, volume);
     };
     if (sweep.kind == Sweep::Kind::infinite)
       to(swept_to_infinity(light_model));
     else if (sweep.kind == Sweep::Kind::amount || light_model.w == 0.0)
       to(swept_by(light_model, sweep.amount));
     else
-      to(swept_by_radius(light_model, object.object->world_from_model, sweep.amount));
+      to(swept_by_radius(light_model, world_from_model, sweep.amount));
   }
 
   const Light& light_;
@@ -225,6 +224,7 @@ std::vector<PlacedVolume> make_volumes(std::span<const PlacedObject> objects, co
   for (std::size_t i = 0; extends && i < casters.size(); ++i) {
     const glm::dvec4 light_model =
         light_in_model(light.position, casters[i]->object->world_from_model);
+    // What moves keeps its triangles, so these serve it too.
     const std::shared_ptr<const Topology>& topology = casters[i]->caster_topology;
     quads[i] = memory.quads(topology, casts_both_sides(*topology, light_model));
   }

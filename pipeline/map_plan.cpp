@@ -27,6 +27,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -36,8 +37,10 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
+#include "pipeline/displaced_caster.h"
 #include "pipeline/finite.h"
 #include "pipeline/half_space.h"
+#include "pipeline/silhouette.h"
 #include "raster/check.h"
 #include "raster/clip.h"
 
@@ -64,15 +67,16 @@ std::array<HalfSpace, 5> view_of(const Camera& camera) {
 }
 
 /// Calls body(a, b, c) with the world corners of each of a model's triangles whose corners are
-/// finite.
-template <class Body>
-void for_each_triangle(const Model& model, const glm::mat4& world_from_model, Body body) {
+/// finite; place(p) moves them in the model.
+template <class Place, class Body>
+void for_each_triangle(const Model& model, const glm::mat4& world_from_model, Place place,
+                       Body body) {
   const glm::dmat4 world(world_from_model);
   for (const Part& part : model.parts) {
     const Mesh& mesh = part.mesh;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
       const auto corner = [&](std::size_t k) {
-        return glm::dvec3(world * glm::dvec4(mesh.positions[mesh.indices[i + k]]));
+        return glm::dvec3(world * glm::dvec4(place(mesh.positions[mesh.indices[i + k]])));
       };
       const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
       if (is_finite(a) && is_finite(b) && is_finite(c)) body(a, b, c);
@@ -82,16 +86,25 @@ void for_each_triangle(const Model& model, const glm::mat4& world_from_model, Bo
 
 /// Calls body(polygon) with each caster's triangles, or what of them lies in the region.
 template <class Body>
-void for_each_caster(const Scene& scene, const Casters& casters, std::span<const HalfSpace> region,
-                     Body body) {
+void for_each_caster(const Scene& scene, const Casters& casters, const glm::vec4& light_world,
+                     std::span<const HalfSpace> region, Body body) {
   Polygon polygon, scratch;
   for (const Object& object : scene.objects) {
     if (!casters.contains(object)) continue;
-    for_each_triangle(*object.caster(), object.world_from_model, [&](const auto&... corners) {
+    const auto take = [&](const auto&... corners) {
       polygon.assign({corners...});
       if (!region.empty()) clip(polygon, region, scratch);
       if (!polygon.empty()) body(polygon);
-    });
+    };
+    if (!is_displaced(object)) {
+      for_each_triangle(*object.caster(), object.world_from_model, std::identity(), take);
+      continue;
+    }
+    const glm::dvec4 light = light_in_model(light_world, object.world_from_model);
+    const auto move = [&](const glm::vec4& p) {
+      return displaced(p, light, object.shadow_displace);
+    };
+    for_each_triangle(*object.caster(), object.world_from_model, move, take);
   }
 }
 
@@ -103,12 +116,13 @@ std::vector<Polygon> visible_receivers(const Scene& scene, const Camera& camera,
   Polygon scratch;
   for (const Object& object : scene.objects) {
     if (!object.receives) continue;
-    for_each_triangle(*object.model, object.world_from_model, [&](const auto&... corners) {
-      Polygon polygon{corners...};
-      clip(polygon, view, scratch);
-      clip(polygon, region, scratch);
-      if (!polygon.empty()) parts.push_back(std::move(polygon));
-    });
+    for_each_triangle(*object.model, object.world_from_model, std::identity(),
+                      [&](const auto&... corners) {
+                        Polygon polygon{corners...};
+                        clip(polygon, view, scratch);
+                        clip(polygon, region, scratch);
+                        if (!polygon.empty()) parts.push_back(std::move(polygon));
+                      });
   }
   return parts;
 }
@@ -156,10 +170,10 @@ struct CasterSpan {
   bool in_reach = true;
 };
 
-CasterSpan span_of_casters(const Scene& scene, const Casters& casters, const LightView& view,
-                           std::span<const HalfSpace> region) {
+CasterSpan span_of_casters(const Scene& scene, const Casters& casters, const glm::vec4& light_world,
+                           const LightView& view, std::span<const HalfSpace> region) {
   CasterSpan span;
-  for_each_caster(scene, casters, region, [&](const Polygon& polygon) {
+  for_each_caster(scene, casters, light_world, region, [&](const Polygon& polygon) {
     for (const glm::dvec3& p : polygon) {
       const glm::dvec3 local = view.local(p);
       span.near = std::min(span.near, local.z);
@@ -207,7 +221,7 @@ MapPlanner::MapPlanner(const Scene& scene, const Casters& casters, const Light& 
       low_(kInfinity),
       high_(-kInfinity) {
   require_settings(settings);
-  for_each_caster(scene, casters, {}, [&](const Polygon& polygon) {
+  for_each_caster(scene, casters, light.position, {}, [&](const Polygon& polygon) {
     for (const glm::dvec3& p : polygon) {
       low_ = glm::min(low_, p);
       high_ = glm::max(high_, p);
@@ -220,7 +234,7 @@ std::optional<MapPlan> MapPlanner::plan(const LightView& view,
   std::array<HalfSpace, 4> sides;
   std::span<const HalfSpace> region;
   if (part) region = sides = view.sides(*part);
-  const CasterSpan span = span_of_casters(scene_, casters_, view, region);
+  const CasterSpan span = span_of_casters(scene_, casters_, light_.position, view, region);
   if (!part && !span.in_reach) return {};
   std::vector<Polygon> receivers = visible_receivers(scene_, camera_, region);
   Rectangle of_receivers;

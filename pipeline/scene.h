@@ -26,9 +26,12 @@ struct Object {
   glm::mat4 world_from_model{1.0f};
   bool casts = true, receives = true;
   /// A mesh in the model's own space that casts in its place (a reduced one); the model is drawn
-  /// and receives. Null: the model casts itself. Where the two differ, the model is in the shadow
-  /// of what it is not (docs/kuehl.md).
+  /// and receives. Null: the model casts itself.
   std::shared_ptr<const Model> shadow_model = nullptr;
+  /// How far, in the model's own space, the shadow model is moved away from the light
+  /// (pipeline/displaced_caster.h). At 0 it shadows the model wherever it lies above its surface;
+  /// twice its error leaves little of that (docs/kuehl.md). Not negative.
+  float shadow_displace = 0.0f;
 
   /// What casts.
   const std::shared_ptr<const Model>& caster() const { return shadow_model ? shadow_model : model; }

@@ -98,7 +98,7 @@ class Flattener {
       require_in_range(node, world_from_node);
       scene_.objects.push_back({node.name, geometry->role, geometry->model,
                                 glm::mat4(world_from_node), geometry->casts, geometry->receives,
-                                geometry->shadow_model});
+                                geometry->shadow_model, geometry->shadow_displace});
       object_paths_.push_back(path_);
     } else if (std::holds_alternative<LightSource>(node.content)) {
       scene_.lights.push_back(in_world(node, world_from_node));

@@ -26,8 +26,9 @@ struct Geometry {
   std::shared_ptr<const Model> model;
   Role role = Role::virtual_object;
   bool casts = true, receives = true;
-  /// As Object::shadow_model.
+  /// As in Object.
   std::shared_ptr<const Model> shadow_model = nullptr;
+  float shadow_displace = 0.0f;
 };
 
 /// A light and its beam in the node's own space; its radius stays in metres of the world. Its

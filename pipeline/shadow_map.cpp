@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "pipeline/displaced_caster.h"
 #include "pipeline/silhouette.h"
 
 namespace gnomon::pipeline {
@@ -29,6 +30,13 @@ bool is_thick(const PlacedObject& object, const glm::vec4& light, double texel_m
   const double scale =
       std::min({glm::length(world[0]), glm::length(world[1]), glm::length(world[2])});
   return caster.thickness * scale >= 2.0 * texel_m;
+}
+
+std::shared_ptr<const Mesh> mesh_of(const Topology& topology) {
+  auto mesh = std::make_shared<Mesh>();
+  mesh->positions = topology.positions;
+  mesh->indices = topology.indices;
+  return mesh;
 }
 
 }  // namespace
@@ -76,6 +84,8 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
         averted && is_thick(object, plan.light, plan.texel_m) ? plan.offset_of_thick : plan.offset;
     PlacedObject seen = object;
     seen.clip_from_model = plan.clip_from_world * object.object->world_from_model;
+    if (is_displaced(*object.object))
+      seen.caster_meshes = {mesh_of(*caster_for(object, plan.light))};
     draw_caster_depth(frame, seen, state);
   }
   // From [-1, 1] to [0, 1], and to [0, kMapDepthFar].

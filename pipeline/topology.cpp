@@ -201,6 +201,17 @@ Topology build_topology(const Model& model) {
   return topology;
 }
 
+Topology moved(const Topology& topology, std::vector<glm::vec4> positions) {
+  raster::require(positions.size() == topology.positions.size(),
+                  "a mesh is moved corner by corner");
+  Topology result = topology;
+  result.positions = std::move(positions);
+  result.planes = {};
+  build_planes(result);
+  result.thickness = thickness_of(result);
+  return result;
+}
+
 std::string describe(const TopologyFaults& faults) {
   std::string words;
   const auto say = [&words](std::size_t count, const char* what) {

@@ -49,6 +49,26 @@ std::uint32_t digit(float value) {
                                                                : 0;
 }
 
+/// The weights, none negative, of a triangle's corners where the line of sight at (x, y) meets it,
+/// or near there if it passes by. Corners are clip space's x, y and w.
+glm::dvec3 weights_on_line(const std::array<glm::dvec3, 3>& clip, double x_ndc, double y_ndc) {
+  // Where weights w make sum w_k (x_k - x w_k, y_k - y w_k) null.
+  glm::dvec3 u, v;
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3& corner = clip[static_cast<std::size_t>(k)];
+    u[k] = corner.x - x_ndc * corner.z;
+    v[k] = corner.y - y_ndc * corner.z;
+  }
+  const glm::dvec3 raw = glm::cross(u, v);
+  const double sum = raw.x + raw.y + raw.z;
+  const glm::dvec3 inside = glm::max(raw / sum, glm::dvec3(0.0));
+  const double rest = inside.x + inside.y + inside.z;
+  if (!(rest > 0.0 && std::isfinite(rest))) return glm::dvec3(1.0 / 3.0);
+  return inside / rest;
+}
+
+}  // namespace
+
 void place_corners(const Topology& topology, const glm::mat4& world_from_model, int threads,
                    WorldCorners& corners) {
   const glm::dmat4 world(world_from_model);
@@ -76,26 +96,6 @@ void place_corners(const Topology& topology, const glm::mat4& world_from_model, 
     corners.high = i == 0 ? p : glm::max(corners.high, p);
   }
 }
-
-/// The weights, none negative, of a triangle's corners where the line of sight at (x, y) meets it,
-/// or near there if it passes by. Corners are clip space's x, y and w.
-glm::dvec3 weights_on_line(const std::array<glm::dvec3, 3>& clip, double x_ndc, double y_ndc) {
-  // Where weights w make sum w_k (x_k - x w_k, y_k - y w_k) null.
-  glm::dvec3 u, v;
-  for (int k = 0; k < 3; ++k) {
-    const glm::dvec3& corner = clip[static_cast<std::size_t>(k)];
-    u[k] = corner.x - x_ndc * corner.z;
-    v[k] = corner.y - y_ndc * corner.z;
-  }
-  const glm::dvec3 raw = glm::cross(u, v);
-  const double sum = raw.x + raw.y + raw.z;
-  const glm::dvec3 inside = glm::max(raw / sum, glm::dvec3(0.0));
-  const double rest = inside.x + inside.y + inside.z;
-  if (!(rest > 0.0 && std::isfinite(rest))) return glm::dvec3(1.0 / 3.0);
-  return inside / rest;
-}
-
-}  // namespace
 
 const PointFinder::NumberedModel& PointFinder::numbered(const std::shared_ptr<const Model>& model) {
   for (const NumberedModel& known : models_) {
@@ -172,27 +172,14 @@ VisiblePoint PointFinder::point_at(std::span<const PlacedObject> objects,
   return point;
 }
 
-void PointFinder::place_all_corners(std::span<const PlacedObject> objects, int threads) {
-  corners_.resize(objects.size());
-  shadow_corners_.resize(objects.size());
-  caster_corners_.resize(objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const PlacedObject& object = objects[i];
-    const glm::mat4& world_from_model = object.object->world_from_model;
-    place_corners(*object.topology, world_from_model, threads, corners_[i]);
-    caster_corners_[i] = &corners_[i];
-    if (object.object->casts_as_drawn()) continue;
-    place_corners(*object.caster_topology, world_from_model, threads, shadow_corners_[i]);
-    caster_corners_[i] = &shadow_corners_[i];
-  }
-}
-
 void PointFinder::find(std::span<const PlacedObject> objects, const Camera& camera, int width,
                        int height, raster::DepthFormat format, int threads) {
   width_ = width;
   height_ = height;
   draw_numbers(objects, format, threads);
-  place_all_corners(objects, threads);
+  corners_.resize(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    place_corners(*objects[i].topology, objects[i].object->world_from_model, threads, corners_[i]);
   points_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const glm::dmat4 clip_from_world(camera.clip_from_world);
   const glm::dvec4 eye = eye_of(camera.clip_from_world);

@@ -39,6 +39,9 @@ struct WorldCorners {
   glm::dvec3 low{0.0}, high{0.0};
 };
 
+void place_corners(const Topology& topology, const glm::mat4& world_from_model, int threads,
+                   WorldCorners& corners);
+
 struct VisiblePoint {
   static constexpr std::uint32_t kNone = 0xffffffff;
   /// On the visible side of the triangle, WorldCorners::apart_m before it: of coplanar surfaces the
@@ -57,16 +60,13 @@ struct VisiblePoint {
 class PointFinder {
  public:
   /// One a pixel of a target of that size and depth format, row after row from the bottom row, and
-  /// the WorldCorners of each object and of what casts in its place. All are valid until the next
-  /// call.
+  /// one WorldCorners an object. Both are valid until the next call.
   /// Preconditions: `objects` are placed for `camera`; fewer than 65536 parts in all.
   void find(std::span<const PlacedObject> objects, const Camera& camera, int width, int height,
             raster::DepthFormat format, int threads);
 
   std::span<const VisiblePoint> points() const { return points_; }
   std::span<const WorldCorners> corners() const { return corners_; }
-  /// One an object; of one that casts as drawn, those of `corners`.
-  std::span<const WorldCorners* const> caster_corners() const { return caster_corners_; }
 
  private:
   struct NumberedModel {
@@ -81,7 +81,6 @@ class PointFinder {
 
   const NumberedModel& numbered(const std::shared_ptr<const Model>& model);
   void draw_numbers(std::span<const PlacedObject> objects, raster::DepthFormat format, int threads);
-  void place_all_corners(std::span<const PlacedObject> objects, int threads);
   VisiblePoint point_at(std::span<const PlacedObject> objects, const glm::dmat4& clip_from_world,
                         const glm::dvec4& eye, int x, int y) const;
 
@@ -91,8 +90,7 @@ class PointFinder {
   std::unique_ptr<raster::ColorBuffer> numbers_;
   std::unique_ptr<raster::DepthBuffer> depth_;
   raster::ExecuteMemory executing_;
-  std::vector<WorldCorners> corners_, shadow_corners_;
-  std::vector<const WorldCorners*> caster_corners_;
+  std::vector<WorldCorners> corners_;
   std::vector<VisiblePoint> points_;
 };
 

@@ -1,0 +1,46 @@
+#include "pipeline/displaced_caster.h"
+
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "pipeline/silhouette.h"
+
+namespace gnomon::pipeline {
+
+glm::vec4 displaced(const glm::vec4& corner, const glm::dvec4& light_model, double distance) {
+  const glm::dvec3 at(corner), light(light_model);
+  const glm::dvec3 away = light_model.w == 0.0 ? -light : at - light;
+  const double length = glm::length(away);
+  if (!(length > 0.0)) return corner;
+  return glm::vec4(glm::vec3(at + away * (distance / length)), corner.w);
+}
+
+bool is_displaced(const Object& object) {
+  return !object.casts_as_drawn() && object.shadow_displace != 0.0f;
+}
+
+std::shared_ptr<const Topology> caster_for(const PlacedObject& object,
+                                           const glm::vec4& light_world) {
+  if (!is_displaced(*object.object)) return object.caster_topology;
+  const glm::dvec4 light = light_in_model(light_world, object.object->world_from_model);
+  std::vector<glm::vec4> positions = object.caster_topology->positions;
+  for (glm::vec4& p : positions) p = displaced(p, light, object.object->shadow_displace);
+  return std::make_shared<const Topology>(moved(*object.caster_topology, std::move(positions)));
+}
+
+Scene displace_casters(Scene scene, const glm::vec4& light_world) {
+  for (Object& object : scene.objects) {
+    if (!is_displaced(object)) continue;
+    const glm::dvec4 light = light_in_model(light_world, object.world_from_model);
+    Model model = *object.shadow_model;
+    for (Part& part : model.parts)
+      for (glm::vec4& p : part.mesh.positions) p = displaced(p, light, object.shadow_displace);
+    object.shadow_model = std::make_shared<const Model>(std::move(model));
+    object.shadow_displace = 0.0f;
+  }
+  return scene;
+}
+
+}  // namespace gnomon::pipeline
