@@ -26,7 +26,6 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "pipeline/displaced_caster.h"
 #include "pipeline/plane_side.h"
 #include "pipeline/silhouette.h"
 #include "raster/check.h"
@@ -153,8 +152,8 @@ class HiddenPoints {
     for (std::size_t i = 0; i < objects.size(); ++i) {
       if (!casters.contains(*objects[i].object)) continue;
       if (!objects[i].object->casts_as_drawn())
-        place_corners(*caster_for(objects[i], light.position), objects[i].object->world_from_model,
-                      threads, memory.shadow_corners[i]);
+        place_corners(caster_for(objects[i], light.position, memory.moved),
+                      objects[i].object->world_from_model, threads, memory.shadow_corners[i]);
       const WorldCorners& corners = objects[i].object->casts_as_drawn() ? memory.finder.corners()[i]
                                                                         : memory.shadow_corners[i];
       const bool one_side = objects[i].object->casts_as_drawn() && objects[i].topology->closed() &&

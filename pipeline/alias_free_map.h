@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "pipeline/casters.h"
+#include "pipeline/displaced_caster.h"
 #include "pipeline/light_grid.h"
 #include "pipeline/placed_object.h"
 #include "pipeline/visible_points.h"
@@ -36,6 +37,7 @@ struct AliasFreeMemory {
   LightGrid grid;
   /// Of what casts in the place of an object, which the light may have moved; one an object.
   std::vector<WorldCorners> shadow_corners;
+  MovedCaster moved;
   /// Of the points to be tested: their pixels, and where they are.
   std::vector<std::uint32_t> pixels;
   std::vector<glm::dvec3> points;

@@ -1,7 +1,7 @@
 #include "pipeline/displaced_caster.h"
 
+#include <cstddef>
 #include <utility>
-#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -21,13 +21,20 @@ bool is_displaced(const Object& object) {
   return !object.casts_as_drawn() && object.shadow_displace != 0.0f;
 }
 
-std::shared_ptr<const Topology> caster_for(const PlacedObject& object,
-                                           const glm::vec4& light_world) {
-  if (!is_displaced(*object.object)) return object.caster_topology;
+const Topology& caster_for(const PlacedObject& object, const glm::vec4& light_world,
+                           MovedCaster& memory) {
+  const Topology& source = *object.caster_topology;
+  if (!is_displaced(*object.object)) return source;
+  if (memory.source != object.caster_topology) {
+    memory.topology = source;
+    memory.source = object.caster_topology;
+  }
   const glm::dvec4 light = light_in_model(light_world, object.object->world_from_model);
-  std::vector<glm::vec4> positions = object.caster_topology->positions;
-  for (glm::vec4& p : positions) p = displaced(p, light, object.object->shadow_displace);
-  return std::make_shared<const Topology>(moved(*object.caster_topology, std::move(positions)));
+  const double distance = object.object->shadow_displace;
+  for (std::size_t i = 0; i < source.positions.size(); ++i)
+    memory.topology.positions[i] = displaced(source.positions[i], light, distance);
+  update_planes(memory.topology);
+  return memory.topology;
 }
 
 Scene displace_casters(Scene scene, const glm::vec4& light_world) {

@@ -23,9 +23,16 @@ glm::vec4 displaced(const glm::vec4& corner, const glm::dvec4& light_model, doub
 /// Is what casts moved at all?
 bool is_displaced(const Object& object);
 
-/// What casts a shadow of the light: caster_topology, or a copy of it that is moved.
-std::shared_ptr<const Topology> caster_for(const PlacedObject& object,
-                                           const glm::vec4& light_world);
+/// A copy that is moved anew for each light and frame.
+struct MovedCaster {
+  std::shared_ptr<const Topology> source;
+  Topology topology;
+};
+
+/// What casts a shadow of the light: caster_topology, or a copy of it that is moved, in `memory`.
+/// Its thickness stays what it was.
+const Topology& caster_for(const PlacedObject& object, const glm::vec4& light_world,
+                           MovedCaster& memory);
 
 /// The scene whose shadow models, copies, lie where methods take them to be for this light; none is
 /// moved again. For rays, which know no light.

@@ -18,7 +18,6 @@
 
 #include <utility>
 
-#include "pipeline/displaced_caster.h"
 #include "pipeline/swept_point.h"
 #include "raster/check.h"
 #include "raster/executor.h"
@@ -75,9 +74,8 @@ class Maker {
   /// Fills `placed` and `volume`; leaves `placed.volume` null where there is none. `quads` is null
   /// for silhouettes.
   void make(const PlacedObject& object, const DegenerateQuads* quads, VolumeMemory::Worker& worker,
-            std::shared_ptr<ShadowVolume> volume, PlacedVolume& placed) const {
-    const std::shared_ptr<const Topology> caster = caster_for(object, light_.position);
-    const Topology& topology = *caster;
+            MovedCaster& moved, std::shared_ptr<ShadowVolume> volume, PlacedVolume& placed) const {
+    const Topology& topology = caster_for(object, light_.position, moved);
     const glm::mat4& world_from_model = object.object->world_from_model;
     const glm::dvec4 light_model = light_in_model(light_.position, world_from_model);
     placed.method =
@@ -231,9 +229,11 @@ std::vector<PlacedVolume> make_volumes(std::span<const PlacedObject> objects, co
   const Maker maker(objects, light, receivers, region, options);
   raster::for_each_chunk(casters.size(), kChunk, options.threads,
                          [&](std::size_t first, std::size_t last) {
+                           VolumeMemory::Worker& worker = workers[first / kChunk];
+                           worker.moved.resize(kChunk);
                            for (std::size_t i = first; i < last; ++i) {
-                             maker.make(*casters[i], quads[i].get(), workers[first / kChunk],
-                                        std::move(volumes[i]), placed[i]);
+                             maker.make(*casters[i], quads[i].get(), worker,
+                                        worker.moved[i - first], std::move(volumes[i]), placed[i]);
                            }
                          });
   std::erase_if(placed, [](const PlacedVolume& volume) { return volume.volume == nullptr; });

@@ -13,6 +13,7 @@
 
 #include "pipeline/casters.h"
 #include "pipeline/degenerate_quads.h"
+#include "pipeline/displaced_caster.h"
 #include "pipeline/near_clip.h"
 #include "pipeline/placed_object.h"
 #include "pipeline/receivers.h"
@@ -57,6 +58,8 @@ class VolumeMemory {
     CastingMesh casting;
     /// Swept positions.
     std::vector<glm::vec4> far;
+    /// One a caster that the worker makes volumes of.
+    std::vector<MovedCaster> moved;
   };
   /// One a chunk of work.
   std::span<Worker> workers(std::size_t count);

@@ -84,8 +84,9 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
         averted && is_thick(object, plan.light, plan.texel_m) ? plan.offset_of_thick : plan.offset;
     PlacedObject seen = object;
     seen.clip_from_model = plan.clip_from_world * object.object->world_from_model;
+    MovedCaster moved;
     if (is_displaced(*object.object))
-      seen.caster_meshes = {mesh_of(*caster_for(object, plan.light))};
+      seen.caster_meshes = {mesh_of(caster_for(object, plan.light, moved))};
     draw_caster_depth(frame, seen, state);
   }
   // From [-1, 1] to [0, 1], and to [0, kMapDepthFar].

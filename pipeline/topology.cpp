@@ -151,9 +151,11 @@ void build_planes(Topology& topology) {
   TrianglePlanes& planes = topology.planes;
   const std::size_t count = topology.triangle_count();
   for (auto* component : {&planes.normal_x, &planes.normal_y, &planes.normal_z}) {
+    component->clear();
     component->reserve(count);
   }
   for (auto* component : {&planes.corner_x, &planes.corner_y, &planes.corner_z}) {
+    component->clear();
     component->reserve(count);
   }
   for (std::size_t t = 0; t < count; ++t) {
@@ -201,16 +203,7 @@ Topology build_topology(const Model& model) {
   return topology;
 }
 
-Topology moved(const Topology& topology, std::vector<glm::vec4> positions) {
-  raster::require(positions.size() == topology.positions.size(),
-                  "a mesh is moved corner by corner");
-  Topology result = topology;
-  result.positions = std::move(positions);
-  result.planes = {};
-  build_planes(result);
-  result.thickness = thickness_of(result);
-  return result;
-}
+void update_planes(Topology& topology) { build_planes(topology); }
 
 std::string describe(const TopologyFaults& faults) {
   std::string words;

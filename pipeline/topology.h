@@ -96,8 +96,9 @@ struct Topology {
 /// Preconditions: three indices a triangle, each below its part's number of positions.
 Topology build_topology(const Model& model);
 
-/// The same triangles elsewhere. Precondition: as many positions, of triangles finite.
-Topology moved(const Topology& topology, std::vector<glm::vec4> positions);
+/// To be called when `positions` have moved, those of triangles to finite places: finds planes and
+/// bounds anew.
+void update_planes(Topology& topology);
 
 /// One sentence that says what a mesh lacks, for a person; empty for a closed manifold.
 std::string describe(const TopologyFaults& faults);
