@@ -19,6 +19,7 @@
 #include "ar/scene_nodes.h"
 #include "ar/shadow_settings.h"
 #include "ar/stopwatch.h"
+#include "pipeline/displaced_caster.h"
 #include "pipeline/general_method.h"
 #include "pipeline/light_samples.h"
 #include "pipeline/modulative_method.h"
@@ -136,18 +137,26 @@ class RayChecker {
     off.color = glm::vec3(0.0f);
     const raster::ColorBuffer shadowed = draw(scene, light), lit = draw(scene, unshadowed),
                               dark = draw(scene, off);
-    const auto samples =
-        pipeline::RayReference(scene).cast(pipeline::pixel_rays(camera_), light.position);
+    const std::vector<pipeline::Ray> rays = pipeline::pixel_rays(camera_);
+    const auto samples = pipeline::RayReference(pipeline::displace_casters(scene, light.position))
+                             .cast(rays, light.position);
+    std::vector<pipeline::RayReference::Sample> of_drawn;
+    if (cast_as_drawn(scene.objects)) {
+      of_drawn = pipeline::RayReference(scene).cast(rays, light.position);
+      result.differ_from_drawn = 0;
+    }
     for (int y = 0; y < camera_.height; ++y) {
       for (int x = 0; x < camera_.width; ++x) {
         if (lit.at(x, y) == dark.at(x, y)) continue;
-        const auto& sample = samples[static_cast<std::size_t>(y) * camera_.width + x];
+        const std::size_t i = static_cast<std::size_t>(y) * camera_.width + x;
+        const auto& sample = samples[i];
         // Nothing falls on it, whatever is in the way.
         if (sample.hit.hit && !scene.objects[sample.hit.object].receives) continue;
         const bool is_dark = shadowed.at(x, y) != lit.at(x, y);
         const bool in_shadow = sample.shadow.in_shadow;
         ++result.tested;
         result.in_shadow += in_shadow;
+        if (!of_drawn.empty()) *result.differ_from_drawn += is_dark != of_drawn[i].shadow.in_shadow;
         if (is_dark == in_shadow) continue;
         ++(is_dark ? result.too_dark : result.too_light);
         *(wrong.at(x, camera_.height - 1 - y) + (is_dark ? 0 : 2)) = 255;
@@ -157,6 +166,16 @@ class RayChecker {
   }
 
  private:
+  /// Takes the shadow models away. Was there a caster that had one?
+  static bool cast_as_drawn(std::vector<pipeline::Object>& objects) {
+    bool any = false;
+    for (pipeline::Object& object : objects) {
+      any = any || (object.casts && !object.casts_as_drawn());
+      object.shadow_model = nullptr;
+    }
+    return any;
+  }
+
   raster::ColorBuffer draw(pipeline::Scene& scene, const pipeline::Light& light) {
     scene.lights = {light};
     Buffers buffers(camera_, raster::ColorFormat::rgba32f);

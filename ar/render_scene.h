@@ -35,6 +35,9 @@ struct RenderOptions {
 struct RayCheck {
   std::string light;
   std::size_t tested = 0, in_shadow = 0, too_dark = 0, too_light = 0;
+  /// Of the same pixels, those that differ from rays to the models that are drawn: what shadow
+  /// models change. Absent where every caster casts as it is drawn.
+  std::optional<std::size_t> differ_from_drawn = {};
 };
 
 struct Rendered {

@@ -14,7 +14,6 @@
 #include "ar/file.h"
 #include "ar/gltf.h"
 #include "ar/map_keys.h"
-#include "ar/model_file.h"
 #include "ar/toml_pose.h"
 #include "ar/toml_table.h"
 #include "raster/frame.h"
@@ -227,9 +226,10 @@ class SceneReader {
     const std::string_view matrix_key = on == "world"               ? "world_from_object"
                                         : group_names_.contains(on) ? "group_from_object"
                                                                     : "body_from_object";
-    const TomlTable t(scene_.file, table, place_of(table, "object"),
-                      {"name", "role", "model", "attached_to", matrix_key, "position_m",
-                       "rotation_deg", "quaternion", "scale", "casts", "receives"});
+    const TomlTable t(
+        scene_.file, table, place_of(table, "object"),
+        {"name", "role", "model", "shadow_model", "shadow_displace_m", "attached_to", matrix_key,
+         "position_m", "rotation_deg", "quaternion", "scale", "casts", "receives"});
     SceneObject object;
     object.name = unique_name(t, object_names_);
     const std::string role = t.required("role", t.text("role"));
@@ -241,6 +241,14 @@ class SceneReader {
     object.body_from_object = read_pose(t, matrix_key, true);
     object.casts = t.boolean("casts").value_or(true);
     object.receives = t.boolean("receives").value_or(true);
+    if (const auto shadow_model = t.file("shadow_model")) {
+      if (!object.casts) t.fail("shadow_model", "together with casts = false");
+      object.shadow_model = *shadow_model;
+      object.shadow_model_line = table.get("shadow_model")->source().begin.line;
+    } else if (t.has("shadow_displace_m")) {
+      t.fail("shadow_displace_m", "without shadow_model");
+    }
+    object.shadow_displace_m = t.number("shadow_displace_m", 0.0, kMaxMetres);
     scene_.objects.push_back(std::move(object));
   }
 
@@ -407,29 +415,12 @@ std::vector<fs::path> input_files(const SceneFile& scene) {
   if (scene.differential && !scene.differential->lit_scene.empty())
     files.push_back(scene.differential->lit_scene);
   for (const CustomDictionary& dictionary : scene.dictionaries) files.push_back(dictionary.file);
-  for (const SceneObject& object : scene.objects) files.push_back(object.model);
+  for (const SceneObject& object : scene.objects) {
+    files.push_back(object.model);
+    if (!object.shadow_model.empty()) files.push_back(object.shadow_model);
+  }
   files.insert(files.end(), scene.light_models.begin(), scene.light_models.end());
   return files;
-}
-
-std::vector<std::shared_ptr<const pipeline::Model>> load_models(const SceneFile& scene,
-                                                                std::vector<std::string>* notes) {
-  std::map<fs::path, std::shared_ptr<const pipeline::Model>> read;
-  std::vector<std::shared_ptr<const pipeline::Model>> models;
-  for (const SceneObject& object : scene.objects) {
-    std::error_code error;
-    const fs::path canonical = fs::canonical(object.model, error);
-    auto& model = read[error ? object.model : canonical];
-    if (!model) {
-      ModelFile file = load_model(object.model);
-      if (notes != nullptr)
-        for (const std::string& note : file.notes)
-          notes->push_back(fmt::format("{}: {}", object.model.string(), note));
-      model = std::make_shared<const pipeline::Model>(std::move(file.model));
-    }
-    models.push_back(model);
-  }
-  return models;
 }
 
 }  // namespace gnomon::ar

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -19,7 +18,6 @@
 #include "ar/tag_layout.h"
 #include "ar/tags.h"
 #include "pipeline/map_settings.h"
-#include "pipeline/mesh.h"
 #include "pipeline/scene.h"
 
 namespace gnomon::ar {
@@ -49,6 +47,12 @@ struct SceneObject {
   std::string name;
   pipeline::Role role = pipeline::Role::virtual_object;
   std::filesystem::path model;
+  /// What casts in the model's place, in its space; empty: the model itself.
+  std::filesystem::path shadow_model;
+  /// The scene file's line that names it.
+  unsigned shadow_model_line = 0;
+  /// pipeline::Object::shadow_displace; absent: found.
+  std::optional<double> shadow_displace_m;
   /// The body or group that carries it; empty for the world.
   std::string attached_to;
   /// Pose and scale in what carries it. Never mirrors.
@@ -137,10 +141,5 @@ void require_photograph(const SceneFile& scene);
 
 /// Every file that the scene names, and the scene file itself; not what those name in turn.
 std::vector<std::filesystem::path> input_files(const SceneFile& scene);
-
-/// The model of each object, in the order of scene.objects; a file that several objects name is
-/// read once and shared. Notes of the reader go to `notes` if given. Throws InputError.
-std::vector<std::shared_ptr<const pipeline::Model>> load_models(
-    const SceneFile& scene, std::vector<std::string>* notes = nullptr);
 
 }  // namespace gnomon::ar

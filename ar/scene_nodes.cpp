@@ -20,8 +20,7 @@ NodePointer find(const std::map<std::string, NodePointer>& nodes, const std::str
 
 }  // namespace
 
-SceneNodes::SceneNodes(const SceneFile& scene,
-                       const std::vector<std::shared_ptr<const pipeline::Model>>& models)
+SceneNodes::SceneNodes(const SceneFile& scene, const std::vector<ObjectModels>& models)
     : file_(one_line(scene.file.string())),
       ambient_(scene.ambient),
       root_(pipeline::make_node("world")) {
@@ -33,7 +32,9 @@ SceneNodes::SceneNodes(const SceneFile& scene,
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     const NodePointer node = pipeline::make_node(object.name, object.body_from_object);
-    node->content = pipeline::Geometry{models[i], object.role, object.casts, object.receives};
+    node->content = pipeline::Geometry{models[i].model,        object.role,
+                                       object.casts,           object.receives,
+                                       models[i].shadow_model, models[i].shadow_displace};
     carrier(object.attached_to)->children.push_back(node);
     objects_.emplace(object.name, node);
   }

@@ -10,7 +10,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "ar/scene_file.h"
-#include "pipeline/mesh.h"
+#include "ar/scene_models.h"
 #include "pipeline/scene.h"
 #include "pipeline/scene_graph.h"
 
@@ -19,8 +19,7 @@ namespace gnomon::ar {
 class SceneNodes {
  public:
   /// `models`: load_models of the same scene. Bodies are not seen until they are placed.
-  SceneNodes(const SceneFile& scene,
-             const std::vector<std::shared_ptr<const pipeline::Model>>& models);
+  SceneNodes(const SceneFile& scene, const std::vector<ObjectModels>& models);
 
   /// Names of the bodies that something hangs on.
   std::vector<std::string> bodies() const;

@@ -13,6 +13,7 @@
 #include "ar/gltf.h"
 #include "ar/pinhole_view.h"
 #include "ar/scene_file.h"
+#include "ar/scene_models.h"
 #include "bench/tori.h"
 
 namespace gnomon::bench {
@@ -64,7 +65,7 @@ World desk_world(int width, int height) {
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ar::SceneObject& object = file.objects[i];
     world.scene.objects.push_back({.name = object.name,
-                                   .model = without_textures(*models[i]),
+                                   .model = without_textures(*models[i].model),
                                    .world_from_model = glm::mat4(object.body_from_object)});
   }
   world.scene.lights = {file.lights.at(0)};

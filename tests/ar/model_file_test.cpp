@@ -19,6 +19,7 @@
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/scene_file.h"
+#include "ar/scene_models.h"
 #include "pipeline/mesh_check.h"
 #include "tests/ar/cube_files.h"
 #include "tests/ar/model_checks.h"
@@ -296,7 +297,7 @@ TEST_F(ModelFileTest, SceneTakesAModelOfAnyFormat) {
   write("cube.off", test::cube_files().at("cube.off"));
   scene.objects.push_back({.name = "cube", .model = folder_.path() / "cube.off"});
   const auto models = load_models(scene);
-  EXPECT_NEAR(test::volume6(*models.at(0)), 48.0, 1e-5);
+  EXPECT_NEAR(test::volume6(*models.at(0).model), 48.0, 1e-5);
 }
 
 }  // namespace

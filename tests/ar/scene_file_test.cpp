@@ -12,6 +12,8 @@
 
 #include "ar/error.h"
 #include "ar/file.h"
+#include "ar/scene_models.h"
+#include "pipeline/surface_distance.h"
 #include "tests/ar/temporary_folder.h"
 
 namespace gnomon::ar {
@@ -470,7 +472,79 @@ TEST(SceneFile, ObjectsThatNameOneFileShareItsModel) {
                                       "model = \"./torus.glb\"\n");
   const auto models = load_models(scene);
   ASSERT_EQ(models.size(), 2u);
-  EXPECT_EQ(models[0], models[1]);
+  EXPECT_EQ(models[0].model, models[1].model);
+  EXPECT_EQ(models[0].shadow_model, nullptr);
+}
+
+// Oracle: the file's text; the mesh reaches the scene that is drawn, where the body is placed.
+TEST(SceneFile, AShadowModelCastsInTheModelsPlace) {
+  const SceneFolder folder;
+  fs::copy(kRoot / "examples/desk/virtual/torus.glb", folder.path() / "fine.glb");
+  const std::string toml = replaced(kSmall, "model = \"torus.glb\"\n",
+                                    "model = \"fine.glb\"\nshadow_model = \"torus.glb\"\n") +
+                           "[[object]]\nname = \"second\"\nrole = \"phantom\"\n"
+                           "model = \"torus.glb\"\nattached_to = \"box\"\n"
+                           "shadow_model = \"./torus.glb\"\n";
+  const SceneFile file = folder.read(toml);
+  EXPECT_EQ(file.objects[0].shadow_model, folder.path() / "torus.glb");
+  EXPECT_THAT(input_files(file), ::testing::Contains(folder.path() / "torus.glb"));
+  const auto models = load_models(file);
+  SceneNodes nodes(file, models);
+  nodes.place("box", glm::dmat4(1.0));
+  const pipeline::Scene scene = nodes.scene();
+  ASSERT_EQ(scene.objects.size(), 2u);
+  const bool torus_first = scene.objects[0].name == "torus";
+  const pipeline::Object &torus = scene.objects[torus_first ? 0 : 1],
+                         &second = scene.objects[torus_first ? 1 : 0];
+  EXPECT_EQ(torus.model, models[0].model);
+  EXPECT_EQ(torus.shadow_model, models[0].shadow_model);
+  EXPECT_FALSE(torus.casts_as_drawn());
+  // Twice what was measured, if the file does not say it.
+  EXPECT_GT(torus.shadow_displace, 0.0f);
+  EXPECT_EQ(
+      torus.shadow_displace,
+      static_cast<float>(2.0 * pipeline::surface_distance(*torus.model, *torus.shadow_model)));
+  EXPECT_EQ(second.shadow_displace, 0.0f);
+  const SceneFile by_hand =
+      folder.read(replaced(toml, "shadow_model = \"torus.glb\"\n",
+                           "shadow_model = \"torus.glb\"\nshadow_displace_m = 0.25\n"));
+  EXPECT_EQ(load_models(by_hand)[0].shadow_displace, 0.25f);
+  // One file is one model: the object casts as it is drawn.
+  EXPECT_EQ(second.model, torus.shadow_model);
+  EXPECT_TRUE(second.casts_as_drawn());
+}
+
+TEST(SceneFile, MistakesAboutAShadowModelAreNamedByLineAndValue) {
+  const SceneFolder folder;
+  write_file(folder.path() / "empty.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  write_file(folder.path() / "flat.obj", "v 0 0 0\nv 1 0 0\nv 0 0 0\nf 1 2 3\nf 1 1 2\n");
+  write_file(folder.path() / "broken.glb", "glTF and no more");
+  const auto message = [&](const std::string& keys) -> std::string {
+    try {
+      load_models(folder.read(
+          replaced(kSmall, "model = \"torus.glb\"\n", "model = \"torus.glb\"\n" + keys)));
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      return error.what();
+    }
+    return "";
+  };
+  const std::string place = "scene.toml:12: [object 'torus'].shadow_model: ";
+  EXPECT_THAT(message("shadow_model = \"no.glb\"\n"), HasSubstr(place + "no such file: "));
+  EXPECT_THAT(message("shadow_model = 3\n"), HasSubstr(place + "3 is not a text in quotes"));
+  EXPECT_THAT(message("shadow_model = \"torus.glb\"\ncasts = false\n"),
+              HasSubstr(place + "together with casts = false"));
+  for (const char* name : {"empty.obj", "flat.obj", "broken.glb", "camera.yml"}) {
+    const std::string got = message("shadow_model = \"" + std::string(name) + "\"\n");
+    EXPECT_THAT(got, HasSubstr(place)) << name;
+    EXPECT_THAT(got, HasSubstr(name));
+  }
+  EXPECT_THAT(
+      message("shadow_model = \"torus.glb\"\nshadow_displace_m = -1\n"),
+      HasSubstr("scene.toml:13: [object 'torus'].shadow_displace_m: -1 is not within 0 to"));
+  EXPECT_THAT(message("shadow_displace_m = 0.1\n"),
+              HasSubstr("scene.toml:12: [object 'torus'].shadow_displace_m: without shadow_model"));
+  EXPECT_THAT(message("shadow_mesh = \"torus.glb\"\n"), HasSubstr("].shadow_mesh: unknown key"));
 }
 
 }  // namespace

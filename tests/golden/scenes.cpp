@@ -11,6 +11,7 @@
 #include "ar/camera.h"
 #include "ar/pinhole_view.h"
 #include "ar/scene_file.h"
+#include "ar/scene_models.h"
 #include "golden/box.h"
 #include "pipeline/general_method.h"
 #include "pipeline/haller.h"
@@ -40,7 +41,7 @@ std::shared_ptr<World> desk_world(const std::string& name, Size size) {
   const auto models = ar::load_models(file);
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ar::SceneObject& object = file.objects[i];
-    world->scene.objects.push_back({object.name, object.role, models[i],
+    world->scene.objects.push_back({object.name, object.role, models[i].model,
                                     glm::mat4(object.body_from_object), object.casts,
                                     object.receives});
   }
