@@ -131,6 +131,7 @@ void add_mesh_simplify(CLI::App& mesh) {
       "outside the error\n"
       "or has faults that the mesh has not, a smaller error is tried, and the output says so. "
       "Textures are left out.\n"
+      "An object of a scene takes it as shadow_model, to cast while the mesh itself is drawn.\n"
       "\n"
       "Examples:\n"
       "  gnomon mesh simplify statue.glb --error 0.5px --distance 2 -o statue_2m.glb\n"

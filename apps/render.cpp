@@ -48,12 +48,14 @@ void print_json(const Options& options, const ar::Rendered& rendered) {
   ordered_json passes = ordered_json::array(), checks = ordered_json::array();
   for (const ar::PassNote& pass : rendered.passes)
     passes.push_back({{"label", pass.label}, {"commands", pass.commands}});
-  for (const ar::RayCheck& check : rendered.checks)
+  for (const ar::RayCheck& check : rendered.checks) {
     checks.push_back({{"light", check.light},
                       {"pixels", check.tested},
                       {"in_shadow", check.in_shadow},
                       {"too_dark", check.too_dark},
                       {"too_light", check.too_light}});
+    if (check.differ_from_drawn) checks.back()["differ_from_drawn"] = *check.differ_from_drawn;
+  }
   ordered_json line{{"scene", options.scene.string()},
                     {"size", {rendered.picture.width, rendered.picture.height}},
                     {"objects", rendered.objects},
@@ -72,11 +74,16 @@ void print_text(const Options& options, const ar::Rendered& rendered) {
       "{:.1f} ms\n",
       options.scene.string(), rendered.objects, rendered.triangles, rendered.lights,
       rendered.passes.size(), rendered.record_ms, rendered.execute_ms);
-  for (const ar::RayCheck& check : rendered.checks)
+  for (const ar::RayCheck& check : rendered.checks) {
     std::cout << fmt::format(
         "light '{}': of {} px that it would light rays see {} in shadow; {} px are too dark, {} "
         "too light\n",
         check.light, check.tested, check.in_shadow, check.too_dark, check.too_light);
+    if (check.differ_from_drawn)
+      std::cout << fmt::format(
+          "light '{}': {} px differ from rays to the models in whose place shadow models cast\n",
+          check.light, *check.differ_from_drawn);
+  }
   std::cout << "wrote " << (options.out / "picture.png").string() << '\n';
 }
 
@@ -144,8 +151,10 @@ void add_render(CLI::App& program) {
   command->add_flag("--json", options->json, "Print one line of JSON");
   command->footer(
       "Writes picture.png. A scene without a camera is seen from the front and above.\n"
+      "An object's shadow_model, a reduced mesh, casts in the place of the model that is drawn.\n"
       "Examples:\n"
       "  gnomon render examples/kuehl/both_methods.toml --out out\n"
+      "  gnomon render examples/kuehl/reduced.toml --out out --rays\n"
       "  gnomon render scene.toml --size 1280x720 --out out --steps --rays\n"
       "  gnomon render scene.toml --method modulative --out out --json");
   command->callback([options] { render(*options); });

@@ -52,6 +52,27 @@ TEST_F(Render, ALampAmongThingsGetsSixMaps) {
             light["in_shadow"].get<int>() / 10);
 }
 
+// Oracles: rays to the shadow models, from which pixels at shadows' edges alone differ, and rays to
+// what is drawn, from which the reduction does.
+TEST_F(Render, ShadowModelsOfTheExampleCastInTheModelsPlace) {
+  const Outcome got = run({"render", kExamples / "reduced.toml", "--size", "320x240", "--out",
+                           file("out"), "--rays", "--json"});
+  ASSERT_EQ(got.status, 0) << got.err;
+  const json line = json::parse(got.out);
+  ASSERT_EQ(line["rays"].size(), 2u);
+  for (const json& light : line["rays"]) {
+    const int wrong = light["too_dark"].get<int>() + light["too_light"].get<int>();
+    EXPECT_GT(light["in_shadow"], 300) << light;
+    EXPECT_LT(wrong, 10) << light;
+    EXPECT_GT(light["differ_from_drawn"].get<int>(), wrong) << light;
+    EXPECT_LT(light["differ_from_drawn"].get<int>(), 500) << light;
+  }
+  EXPECT_THAT(run({"render", kExamples / "reduced.toml", "--size", "160x120", "--out", file("out"),
+                   "--rays"})
+                  .out,
+              HasSubstr("differ from rays to the models in whose place shadow models cast"));
+}
+
 // The frame is the picture: same bytes.
 TEST_F(Render, ItsFrameReplaysToThePicture) {
   const Outcome got = run({"render", kExamples / "both_methods.toml", "--size", "160x120", "--out",
