@@ -12,7 +12,6 @@
 // a first one, on one thread) and of executing depth, volumes and counts (z-fail, the same). A
 // wrong pixel is explained where a silhouette or a shadow's edge passes within a pixel, or where
 // two units of depth decide (tests/pipeline/stencil_check.h).
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -21,70 +20,25 @@
 #include <string>
 #include <vector>
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include "ar/model_file.h"
-#include "ar/stopwatch.h"
 #include "tests/pipeline/light_check.h"
 #include "tests/pipeline/stencil_check.h"
-#include "tests/pipeline/test_meshes.h"
+#include "tests/tools/mesh_above_plate.h"
 
 namespace gnomon {
 namespace {
 
 using namespace pipeline;
 
-constexpr int kPictures = 3, kWidth = 320, kHeight = 240;
+using test::kPictures;
 
-struct Bounds {
-  glm::vec3 low{1e30f}, high{-1e30f};
-};
-
-Bounds bounds_of(const Model& model, const glm::mat4& world_from_model) {
-  Bounds bounds;
-  for (const Part& part : model.parts) {
-    for (const std::uint32_t index : part.mesh.indices) {
-      const glm::vec3 p(world_from_model * part.mesh.positions[index]);
-      bounds.low = glm::min(bounds.low, p);
-      bounds.high = glm::max(bounds.high, p);
-    }
-  }
-  return bounds;
-}
-
-/// The mesh above a plate that casts no shadow of its own.
-Scene scene_of(const std::shared_ptr<const Model>& model, int picture, std::mt19937& random) {
-  const Bounds own = bounds_of(*model, glm::mat4(1.0f));
-  const float scale = 1.0f / glm::length(own.high - own.low);
-  glm::mat4 world_from_model =
-      test::placed(glm::vec3(0.0f), glm::normalize(test::uniform_point(random, -1.0f, 1.0f)),
-                   test::uniform(random, 0.0f, 6.0f), glm::vec3(scale));
-  const Bounds turned = bounds_of(*model, world_from_model);
-  const glm::vec3 middle = (turned.low + turned.high) * 0.5f;
-  world_from_model = test::placed({-middle.x, 0.1f - turned.low.y, -middle.z}) * world_from_model;
-
-  Scene scene;
-  scene.objects.push_back(
-      {.name = "plate", .model = test::model_of(test::square_mesh(3.0f)), .casts = false});
-  scene.objects.push_back({.name = "mesh", .model = model, .world_from_model = world_from_model});
-  glm::vec3 at = test::uniform_point(random, -1.0f, 1.0f);
-  at.y = test::uniform(random, 1.5f, 2.5f);
-  scene.lights.push_back({.name = "lamp", .position = glm::vec4(at, 1.0f)});
-  if (picture % 2 == 1) scene.lights[0].position = glm::vec4(glm::normalize(at), 0.0f);
-  return scene;
-}
-
-/// Milliseconds of all pictures.
-struct Times {
-  double make_ms = 0.0, execute_ms = 0.0;
-};
+constexpr int kWidth = 320, kHeight = 240;
 
 struct Row {
   test::Disagreement robust_zfail, robust_automatic, classical;
   test::LightCheck map, alias_free;
   std::size_t bytes = 0, different = 0;
-  Times silhouettes, quads;
+  test::VolumeTimes silhouettes, quads;
 };
 
 constexpr Extrusion kInfinite{.kind = Extrusion::Kind::infinite};
@@ -103,51 +57,12 @@ void compare_geometries(const Scene& scene, const Camera& camera, Row& row) {
   }
 }
 
-void time_geometry(const Scene& scene, const Camera& camera, VolumeGeometry geometry,
-                   Times& times) {
-  constexpr int kTimes = 6;
-  TopologyCache topologies;
-  VolumeMemory memory;
-  raster::ExecuteMemory executing;
-  const std::vector<PlacedObject> objects = place_objects(scene, camera, topologies);
-  raster::DepthBuffer depth(kWidth, kHeight);
-  raster::StencilBuffer stencil(kWidth, kHeight);
-  double make_ms = 1e30, execute_ms = 1e30;
-  for (int i = 0; i < kTimes; ++i) {
-    ar::Stopwatch timer;
-    const std::vector<PlacedVolume> volumes = make_volumes(objects, scene.lights[0], {}, {},
-                                                           {.method = VolumeMethod::zfail,
-                                                            .extrusion = kInfinite,
-                                                            .geometry = geometry,
-                                                            .threads = 1,
-                                                            .memory = &memory});
-    const double made_ms = timer.lap_ms();
-    raster::Frame frame;
-    frame.begin_pass("surfaces and volumes", {.depth = &depth, .stencil = &stencil});
-    frame.clear({.depth = 1.0f, .stencil = 0});
-    raster::State state = surface_state();
-    state.depth = raster::DepthState{};
-    for (const PlacedObject& object : objects) draw_depth(frame, object, state);
-    count_volumes(frame, volumes, {});
-    timer.lap_ms();
-    raster::execute(frame, {.threads = 1, .memory = &executing});
-    const double executed_ms = timer.lap_ms();
-    if (i == 0) continue;
-    make_ms = std::min(make_ms, made_ms);
-    execute_ms = std::min(execute_ms, executed_ms);
-  }
-  times.make_ms += make_ms;
-  times.execute_ms += execute_ms;
-}
-
 Row measure(const std::shared_ptr<const Model>& model) {
   std::mt19937 random(2005);
   Row row;
   for (int picture = 0; picture < kPictures; ++picture) {
-    const Scene scene = scene_of(model, picture, random);
-    glm::vec3 eye = test::uniform_point(random, -1.0f, 1.0f);
-    eye = glm::normalize(glm::vec3(eye.x, 0.0f, eye.z)) * 1.6f + glm::vec3(0.0f, 1.1f, 0.0f);
-    const Camera camera = test::look(eye, {0.0f, 0.3f, 0.0f}, kWidth, kHeight);
+    const Scene scene = test::mesh_above_plate(model, picture, random);
+    const Camera camera = test::camera_about(random, kWidth, kHeight);
     const RayReference rays(scene);
     const auto compare = [&](const VolumeOptions& options) {
       return test::compare_with_rays(test::count_scene(scene, camera, options), scene, rays,
@@ -163,8 +78,8 @@ Row measure(const std::shared_ptr<const Model>& model) {
     row.map += test::check_light(memory, scene, camera, ShadowMethod::map);
     row.alias_free += test::check_light(memory, scene, camera, ShadowMethod::alias_free);
     compare_geometries(scene, camera, row);
-    time_geometry(scene, camera, VolumeGeometry::silhouettes, row.silhouettes);
-    time_geometry(scene, camera, VolumeGeometry::degenerate_quads, row.quads);
+    test::time_volumes(scene, camera, VolumeGeometry::silhouettes, row.silhouettes);
+    test::time_volumes(scene, camera, VolumeGeometry::degenerate_quads, row.quads);
   }
   return row;
 }
@@ -175,7 +90,7 @@ void print(const std::string& name, const Model& model, const Row& row) {
   const auto pair = [](const test::Disagreement& d) {
     return std::to_string(d.wrong) + ", " + std::to_string(d.unexplained);
   };
-  const auto times = [](const Times& t) {
+  const auto times = [](const test::VolumeTimes& t) {
     char text[64];
     std::snprintf(text, sizeof text, "%.2f + %.2f", t.make_ms / kPictures,
                   t.execute_ms / kPictures);
