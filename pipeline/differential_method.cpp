@@ -18,8 +18,9 @@
 namespace gnomon::pipeline {
 namespace {
 
+/// Of what casts. One that is moved away from a light hides nothing that it did not hide before.
 std::array<glm::dvec3, 8> corners_of(const PlacedObject& object) {
-  const Topology& topology = *object.topology;
+  const Topology& topology = *object.caster_topology;
   const glm::dmat4 world(object.object->world_from_model);
   std::array<glm::dvec3, 8> corners;
   for (std::size_t i = 0; i < 8; ++i) {
@@ -90,7 +91,7 @@ raster::Frame DifferentialMethod::record(const Scene& virtual_scene, const Camer
   std::vector<glm::dvec3> corners;
   std::vector<Bounds> boxes;
   for (const PlacedObject& object : placed_) {
-    if (!object.object->casts || object.topology->triangle_count() == 0) continue;
+    if (!object.object->casts || object.caster_topology->triangle_count() == 0) continue;
     Bounds& box = boxes.emplace_back();
     for (const glm::dvec3& p : corners_of(object)) {
       corners.push_back(p);

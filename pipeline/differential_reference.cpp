@@ -26,9 +26,9 @@ Sphere sphere_of(const Bounds& box) {
   return {box.center(), 0.5 * glm::length(box.high - box.low)};
 }
 
-Bounds bounds_of(const Object& object) {
+Bounds bounds_of_caster(const Object& object) {
   Bounds box;
-  for (const Part& part : object.model->parts) {
+  for (const Part& part : object.caster()->parts) {
     for (const glm::vec4& p : part.mesh.positions)
       box.add(glm::dvec3(glm::dmat4(object.world_from_model) * glm::dvec4(p)));
   }
@@ -71,7 +71,7 @@ struct DifferentialReference::World {
       patch_spheres.push_back(sphere);
     }
     for (const Object& object : virtual_scene.objects) {
-      if (object.casts) casters.push_back(sphere_of(bounds_of(object)));
+      if (object.casts) casters.push_back(sphere_of(bounds_of_caster(object)));
       diffuse.emplace_back(linear_color(object.model->parts.at(0).material.diffuse));
     }
   }

@@ -169,6 +169,31 @@ TEST(Differential, VolumesAndMapsAgreeButForTexelsAlongOutlines) {
   EXPECT_LT(rms(maps, volumes, 4, all), 0.6);
 }
 
+// Oracle: the picture of what casts, byte for byte wherever that would not be seen itself.
+TEST(Differential, AShadowModelCastsInTheObjectsPlace) {
+  const Setting setting;
+  Scene box = ball_at({0.3f, 0.3f, 0.0f});
+  box.objects[0].model = test::model_of(test::box_mesh(glm::vec3(0.25f)));
+  Scene ball = ball_at({0.3f, 0.3f, 0.0f});
+  const auto plain = draw(setting, ball, {});
+  ball.objects[0].shadow_model = box.objects[0].model;
+  for (const ShadowMask mask : {ShadowMask::map, ShadowMask::volumes}) {
+    const auto expected = draw(setting, box, {.mask = mask}),
+               got = draw(setting, ball, {.mask = mask});
+    std::size_t compared = 0, unlike_the_balls = 0;
+    for (std::size_t i = 0; i < expected.size() / 4; ++i) {
+      if (expected[4 * i + 3] != 0) continue;
+      ++compared;
+      for (std::size_t c = 0; c < 4; ++c) {
+        ASSERT_EQ(got[4 * i + c], expected[4 * i + c]) << i;
+        unlike_the_balls += got[4 * i + c] != plain[4 * i + c];
+      }
+    }
+    EXPECT_GT(compared, expected.size() / 8);
+    EXPECT_GT(unlike_the_balls, 500u);
+  }
+}
+
 // Oracle: what is taken in floats, not rounded at all.
 TEST(Differential, BytesLoseFaintShadowsAndDitherKeepsThemOnAverage) {
   const Setting setting;
