@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
+#include "ar/dark_response.h"
 #include "ar/error.h"
 #include "raster/executor.h"
 
@@ -15,8 +16,8 @@ namespace gnomon::ar {
 namespace {
 
 constexpr int kValues = 256;
-/// 0 and 255 stand for everything below and beyond.
-constexpr int kLowest = 1, kHighest = 254;
+/// 255 stands for everything beyond; dark values are found in another way (dark_response.h).
+constexpr int kLowest = static_cast<int>(kFirstKnownValue), kHighest = 254;
 /// Pixels of a set are summed in so many pieces, whatever the number of threads.
 constexpr std::size_t kPieces = 16;
 /// The smoothness term is a guess, the pixels are measurements: it must not be needed by more.
@@ -106,8 +107,7 @@ std::vector<double> solve(Equations& equations, double smoothness) {
     return equations.matrix[static_cast<std::size_t>(row * kValues + column)];
   };
   for (int v = kLowest + 1; v < kHighest; ++v) {
-    // In steps of log value a power law is straight; the weight keeps the dark end, where the curve
-    // bends most, as free as the bright one.
+    // A power law bends, in values, most at the dark end: it is held the least there.
     const double w = lambda * std::pow(v / 255.0, 4.0);
     const std::array<double, 3> second{1.0, -2.0, 1.0};
     for (int a = 0; a < 3; ++a)
@@ -115,9 +115,10 @@ std::vector<double> solve(Equations& equations, double smoothness) {
         entry(v - 1 + a, v - 1 + b) +=
             w * second[static_cast<std::size_t>(a)] * second[static_cast<std::size_t>(b)];
   }
-  // The constant that the exposures leave open, and the two values that none of them tells.
+  // The constant that the exposures leave open, and the values that take no part.
   entry(128, 128) += equations.weight;
-  for (const int v : {0, 255}) entry(v, v) += 1.0;
+  for (int v = 0; v < kValues; ++v)
+    if (v < kLowest || v > kHighest) entry(v, v) += 1.0;
   cv::Mat matrix(kValues, kValues, CV_64F, equations.matrix.data());
   cv::Mat right(kValues, 1, CV_64F, equations.right.data()), curve;
   cv::solve(matrix, right, curve, cv::DECOMP_CHOLESKY);
@@ -125,18 +126,18 @@ std::vector<double> solve(Equations& equations, double smoothness) {
 }
 
 /// Exposures from their logarithms: rising, 0 at value 0, 1 at 255.
-std::array<double, 256> finished(const std::vector<double>& log_exposure) {
+std::array<double, 256> finished(const std::vector<double>& log_exposure,
+                                 std::span<const Brackets> sets, std::size_t channel, int threads) {
   std::array<double, 256> curve{};
   for (int v = kLowest; v <= kHighest; ++v) {
     const auto at = static_cast<std::size_t>(v);
     // Noise may let neighbours fall by a hair.
     curve[at] = std::max(std::exp(log_exposure[at]), curve[at - 1] * (1.0 + 1e-5));
   }
-  // 0 and 255 hold what lies beyond the ends: the one starts at no light, the other goes on as the
-  // curve comes in.
+  // 255 holds all that lies beyond the end: the curve goes on as it comes in.
   curve[255] = curve[254] + (curve[254] - curve[244]) / 10.0;
+  fit_dark_values(sets, channel, threads, curve);
   for (double& exposure : curve) exposure /= curve[255];
-  curve[255] = 1.0;
   return curve;
 }
 
@@ -194,7 +195,8 @@ ExposureCurve fit_response(std::span<const Brackets> sets, const ResponseFitOpti
           fmt::format("{}: no pixel lies between black and saturation in two exposures, so they "
                       "tell no response",
                       sets.front().list.string()));
-    curve.exposure_from_value[channel] = finished(solve(equations, options.smoothness));
+    curve.exposure_from_value[channel] =
+        finished(solve(equations, options.smoothness), sets, channel, options.threads);
   }
   for (const Brackets& set : sets) check_times(set, curve);
   return curve;

@@ -21,7 +21,7 @@ struct SceneLightOptions {
   /// Visibility rays for each pair of patches: 1, 4 or 16.
   int visibility_samples = 4;
   /// Rounds of share_radiance.
-  int rounds = 60;
+  int rounds = 20;
   int threads = 0;
   /// Called before each step, with its name and number from 0.
   std::function<void(const char* step, int number)> progress = {};
