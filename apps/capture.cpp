@@ -1,6 +1,8 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -12,7 +14,9 @@
 #include "ar/capture_file.h"
 #include "ar/error.h"
 #include "ar/file.h"
+#include "ar/image_file.h"
 #include "ar/lit_scene_file.h"
+#include "ar/patch_picture.h"
 #include "ar/scene_light.h"
 #include "pipeline/patch_exchange.h"
 
@@ -24,17 +28,36 @@ using nlohmann::ordered_json;
 namespace {
 
 struct Options {
-  fs::path folder, out;
+  fs::path folder, out, picture;
   bool json = false;
   ar::SceneLightOptions light;
 };
 
+std::vector<fs::path> inputs_of(const ar::CaptureFile& capture) {
+  std::vector<fs::path> inputs{capture.file, capture.camera, capture.photograph,
+                               capture.photograph_brackets, capture.model};
+  if (const auto* ball = std::get_if<ar::BallProbe>(&capture.probe))
+    inputs.push_back(ball->brackets);
+  else
+    inputs.push_back(std::get<ar::LatlongProbe>(capture.probe).picture);
+  return inputs;
+}
+
+/// Before any work. Throws ar::InputError.
 void check_output(const ar::CaptureFile& capture, const fs::path& out) {
-  // Nothing is left behind; a folder that cannot be written is known before the work.
-  const ar::PendingFile probe(out);
-  for (const fs::path& input : {capture.file, capture.camera, capture.photograph,
-                                capture.photograph_brackets, capture.model})
-    refuse_to_replace(input, out);
+  for (const fs::path& input : inputs_of(capture)) refuse_to_replace(input, out);
+  // Begun and not committed, it leaves nothing behind.
+  const ar::PendingFile begun(out);
+}
+
+void write_picture(const ar::CaptureFile& capture, const Options& options,
+                   const pipeline::LitScene& scene) {
+  if (options.picture.empty()) return;
+  const ar::Image photograph = ar::read_image_rgb(capture.photograph);
+  const ar::CameraModel camera =
+      ar::camera_for_picture(ar::read_camera(capture.camera), photograph.width, photograph.height);
+  ar::write_png(options.picture,
+                ar::patch_picture(scene, camera, capture.world_from_camera, options.light.threads));
 }
 
 void print_json(const Options& options, const ar::SceneLight& light) {
@@ -70,6 +93,7 @@ void print_text(const Options& options, const ar::SceneLight& light) {
 void capture(Options& options) {
   const ar::CaptureFile file = ar::read_capture(options.folder);
   check_output(file, options.out);
+  if (!options.picture.empty()) check_output(file, options.picture);
   ar::SceneLight light;
   {
     const Progress progress("step", ar::kSceneLightSteps);
@@ -77,6 +101,7 @@ void capture(Options& options) {
     light = ar::find_scene_light(file, options.light);
   }
   for (const std::string& note : light.notes) std::cerr << "gnomon: note: " << note << '\n';
+  write_picture(file, options, light.scene);
   ar::write_lit_scene(options.out, light.scene);
   if (options.json)
     print_json(options, light);
@@ -108,13 +133,15 @@ void add_capture(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--threads", options->light.threads, "Threads (0: all of the machine)")
       ->check(CLI::Range(0, 256));
+  command->add_option("--picture", options->picture,
+                      "Also write here (PNG) the patches as the photograph's camera sees them");
   command->add_flag("--json", options->json, "Print one line of JSON");
   command->footer(
       "Writes one file: patches with radiance and reflectance, the camera's tone curve, a map of\n"
       "the light around the probe.\n"
       "Examples:\n"
       "  gnomon capture examples/soft --out soft.lit\n"
-      "  gnomon capture examples/soft --out soft.lit --patches 3000 --json");
+      "  gnomon capture examples/soft --out soft.lit --patches 3000 --picture patches.png --json");
   command->callback([options] { capture(*options); });
 }
 

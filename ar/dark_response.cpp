@@ -23,23 +23,35 @@ struct Histograms {
   std::vector<std::array<std::uint32_t, 256>> bins{static_cast<std::size_t>(kBins)};
 };
 
-void count_pixels(const Brackets& set, std::size_t channel, const std::array<double, 256>& curve,
+/// In stops: of each value's exposure, and of each exposure's time.
+struct Logarithms {
+  std::array<double, 256> value{};
+  std::vector<double> time;
+
+  Logarithms(const Brackets& set, const std::array<double, 256>& curve) {
+    for (std::size_t v = kFirstKnownValue; v < 256; ++v) value[v] = std::log2(curve[v]);
+    for (const Exposure& e : set.exposures) time.push_back(std::log2(e.time_s));
+  }
+};
+
+void count_pixels(const Brackets& set, std::size_t channel, const Logarithms& logs,
                   std::size_t first, std::size_t last, Histograms& counts) {
-  const double top = curve[kFirstKnownValue];
   for (std::size_t i = first; i < last; ++i) {
     // The longest exposure that is not saturated knows the pixel best.
-    double radiance = 0.0;
-    for (const Exposure& e : set.exposures) {
-      const std::size_t value = e.picture.pixels[3 * i + channel];
-      if (value >= kFirstKnownValue && value <= kBrightest) radiance = curve[value] / e.time_s;
-    }
-    if (radiance <= 0.0) continue;
-    for (const Exposure& e : set.exposures) {
-      const double stops = std::log2(radiance * e.time_s / top);
+    const auto value_in = [&](std::size_t k) -> std::size_t {
+      return set.exposures[k].picture.pixels[3 * i + channel];
+    };
+    std::size_t best = set.exposures.size();
+    for (std::size_t k = 0; k < set.exposures.size(); ++k)
+      if (value_in(k) >= kFirstKnownValue && value_in(k) <= kBrightest) best = k;
+    if (best == set.exposures.size()) continue;
+    const double stops_to_top =
+        logs.value[value_in(best)] - logs.time[best] - logs.value[kFirstKnownValue];
+    for (std::size_t k = 0; k < best; ++k) {
+      const double stops = stops_to_top + logs.time[k];
       if (stops >= 0.0) break;
       const int bin = static_cast<int>(-stops * kBinsAStop);
-      if (bin < kBins)
-        ++counts.bins[static_cast<std::size_t>(bin)][e.picture.pixels[3 * i + channel]];
+      if (bin < kBins) ++counts.bins[static_cast<std::size_t>(bin)][value_in(k)];
     }
   }
 }
@@ -69,9 +81,9 @@ void fit_dark_values(std::span<const Brackets> sets, std::size_t channel, int th
     for (std::size_t p = begin; p < end; ++p) {
       const Brackets& set = sets[p / kPieces];
       const std::size_t pixels = static_cast<std::size_t>(set.width()) * set.height();
+      const Logarithms logs(set, curve);
       const std::size_t k = p % kPieces;
-      count_pixels(set, channel, curve, pixels * k / kPieces, pixels * (k + 1) / kPieces,
-                   pieces[p]);
+      count_pixels(set, channel, logs, pixels * k / kPieces, pixels * (k + 1) / kPieces, pieces[p]);
     }
   });
   const double log_top = std::log(curve[kFirstKnownValue]);
@@ -95,7 +107,8 @@ void fit_dark_values(std::span<const Brackets> sets, std::size_t channel, int th
     return (high.log_exposure - low.log_exposure) / (std::log(high.value) - std::log(low.value));
   };
   const Point above{2.0 * kFirstKnownValue, std::log(curve[2 * kFirstKnownValue])};
-  const double last_slope = slope(points.size() > 4 ? points[points.size() - 5] : above, points.back());
+  const double last_slope =
+      slope(points.size() > 4 ? points[points.size() - 5] : above, points.back());
   std::size_t k = 0;
   for (std::size_t v = kFirstKnownValue - 1; v >= 1; --v) {
     const auto value = static_cast<double>(v);

@@ -34,24 +34,26 @@ std::optional<Reflection> reflect(const MirrorBall& ball, const Ray& ray) {
                     cosine};
 }
 
-glm::dvec3 mirror_point(const MirrorBall& ball, const glm::dvec3& eye, const glm::dvec4& towards) {
-  constexpr int kMostSteps = 64;
+std::optional<glm::dvec3> mirror_point(const MirrorBall& ball, const glm::dvec3& eye,
+                                       const glm::dvec4& towards) {
+  constexpr int kMostSteps = 100;
+  constexpr double kStill = 1e-8;
   glm::dvec3 point = ball.center_m;
   for (int step = 0; step < kMostSteps; ++step) {
     // The normal halves the angle between the two directions; each step turns it by a part of the
-    // last turn that is about the ball's radius over the distance.
+    // last turn that is about the ball's radius over the distance. Behind the ball it comes to no
+    // rest.
     const glm::dvec3 to_eye = glm::normalize(eye - point);
     const glm::dvec3 to_light = glm::normalize(glm::dvec3(towards) - point * towards.w);
     const glm::dvec3 half = to_eye + to_light;
     const double length = glm::length(half);
-    // Exactly behind the ball: no point shows it.
-    if (!(length > 1e-12)) break;
+    if (!(length > 1e-12)) return std::nullopt;
     const glm::dvec3 next = ball.center_m + half * (ball.radius_m / length);
-    const bool still = glm::length(next - point) < 1e-10 * ball.radius_m;
+    const bool still = glm::length(next - point) < kStill * ball.radius_m;
     point = next;
-    if (still) break;
+    if (still) return point;
   }
-  return point;
+  return std::nullopt;
 }
 
 std::optional<BallOutline> ball_outline(const MirrorBall& ball, const Lens& lens,

@@ -40,10 +40,12 @@ struct Reflection {
 /// What becomes of a ray from outside of the ball; absent where it passes.
 std::optional<Reflection> reflect(const MirrorBall& ball, const Ray& ray);
 
-/// The point of the ball that shows a viewer at `eye` the place `towards`, seen over the ball's
-/// surface; w = 0: the direction `towards`, at infinity. Precondition: both are outside of the
-/// ball. The result is mirrored exactly to 1e-9 rad where the incidence is below about 80 degrees.
-glm::dvec3 mirror_point(const MirrorBall& ball, const glm::dvec3& eye, const glm::dvec4& towards);
+/// The point of the ball that shows a viewer at `eye` the place `towards` or, with w = 0, the
+/// direction `towards`; absent where none does, since it is hidden behind the ball. Precondition:
+/// both are outside of the ball. Holds: the sight of the point is reflected to the place within
+/// 1e-7 rad.
+std::optional<glm::dvec3> mirror_point(const MirrorBall& ball, const glm::dvec3& eye,
+                                       const glm::dvec4& towards);
 
 /// The ball in a picture.
 struct BallOutline {

@@ -43,31 +43,44 @@ class Cells {
     return cells_[static_cast<std::size_t>(row) * columns_ + column];
   }
 
-  void trace_row(int row, const RayOfPlace& ray_of, const pipeline::PatchVisibility& patches) {
-    const std::vector<std::optional<Ray>> top = corners(row, ray_of),
-                                          bottom = corners(row + 1, ray_of);
+  /// Rows next to each other share their corners.
+  void trace_rows(int first, int last, const RayOfPlace& ray_of,
+                  const pipeline::PatchVisibility& patches) {
+    Corners top = corners(first, ray_of);
+    for (int row = first; row < last; ++row) {
+      Corners bottom = corners(row + 1, ray_of);
+      trace_row(row, top, bottom, patches);
+      top = std::move(bottom);
+    }
+  }
+
+ private:
+  using Corners = std::vector<std::optional<Ray>>;
+
+  void trace_row(int row, const Corners& top, const Corners& bottom,
+                 const pipeline::PatchVisibility& patches) {
     for (int x = 0; x < columns_; ++x) {
       const auto i = static_cast<std::size_t>(x);
       const auto &a = top[i], &b = top[i + 1], &c = bottom[i + 1], &d = bottom[i];
-      const std::optional<Ray> ray = ray_of(place(x + 0.5, row + 0.5));
-      if (!a || !b || !c || !d || !ray) continue;
+      if (!a || !b || !c || !d) continue;
       Cell& cell = cells_[static_cast<std::size_t>(row) * columns_ + i];
       cell.solid_angle_sr =
           static_cast<float>(solid_angle(a->direction, b->direction, c->direction) +
                              solid_angle(a->direction, c->direction, d->direction));
-      const pipeline::PatchVisibility::Hit hit = patches.trace(ray->origin, ray->direction);
+      const pipeline::PatchVisibility::Hit hit =
+          patches.trace((a->origin + b->origin + c->origin + d->origin) * 0.25,
+                        glm::normalize(a->direction + b->direction + c->direction + d->direction));
       cell.patch = hit.patch == pipeline::PatchVisibility::kNone ? kOpen
                    : hit.front ? static_cast<std::uint32_t>(hit.patch)
                                : kBack;
     }
   }
 
- private:
   glm::dvec2 place(double column, double row) const {
     return {window_.x0 - 0.5 + column / samples_, window_.y0 - 0.5 + row / samples_};
   }
-  std::vector<std::optional<Ray>> corners(int row, const RayOfPlace& ray_of) const {
-    std::vector<std::optional<Ray>> line;
+  Corners corners(int row, const RayOfPlace& ray_of) const {
+    Corners line;
     for (int x = 0; x <= columns_; ++x) line.push_back(ray_of(place(x, row)));
     return line;
   }
@@ -150,10 +163,10 @@ PixelFootprints find_footprints(const FloatImage& radiance, const FootprintWindo
                   "the window lies in the picture");
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   Cells cells(window, options.samples);
-  raster::for_each_chunk(static_cast<std::size_t>(cells.rows()), 4, options.threads,
+  raster::for_each_chunk(static_cast<std::size_t>(cells.rows()), 16, options.threads,
                          [&](std::size_t first, std::size_t last) {
-                           for (std::size_t row = first; row < last; ++row)
-                             cells.trace_row(static_cast<int>(row), ray_of, patches);
+                           cells.trace_rows(static_cast<int>(first), static_cast<int>(last), ray_of,
+                                            patches);
                          });
   std::vector<PixelFootprints> rows(static_cast<std::size_t>(height));
   raster::for_each_chunk(rows.size(), 8, options.threads, [&](std::size_t first, std::size_t last) {

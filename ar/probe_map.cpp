@@ -17,7 +17,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr std::int64_t kMostLatlongPixels = std::int64_t{1} << 21;
 /// A texel of the map is looked at in so many places a side.
-constexpr int kPlaces = 4;
+constexpr int kPlaces = 2;
 
 glm::dvec3 value_at(const FloatImage& picture, int x, int y) {
   const float* v =
@@ -61,11 +61,12 @@ std::optional<Ray> BallPicture::ray(glm::dvec2 place) const {
 
 std::optional<glm::dvec3> BallPicture::seen(const glm::dvec4& towards) const {
   const glm::dvec3 eye(world_from_camera[3]);
-  const glm::dvec3 point = mirror_point(ball, eye, towards);
-  const glm::dvec3 normal = (point - ball.center_m) / ball.radius_m;
-  if (glm::dot(normal, glm::normalize(eye - point)) < least_cos) return std::nullopt;
+  const std::optional<glm::dvec3> point = mirror_point(ball, eye, towards);
+  if (!point) return std::nullopt;
+  const glm::dvec3 normal = (*point - ball.center_m) / ball.radius_m;
+  if (glm::dot(normal, glm::normalize(eye - *point)) < least_cos) return std::nullopt;
   const std::optional<glm::dvec2> pixel =
-      lens.project(glm::dvec3(rigid_inverse(world_from_camera) * glm::dvec4(point, 1.0)));
+      lens.project(glm::dvec3(rigid_inverse(world_from_camera) * glm::dvec4(*point, 1.0)));
   if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x > radiance.width - 1.0 ||
       pixel->y > radiance.height - 1.0)
     return std::nullopt;

@@ -20,6 +20,8 @@ constexpr int kValues = 256;
 constexpr int kLowest = static_cast<int>(kFirstKnownValue), kHighest = 254;
 /// Pixels of a set are summed in so many pieces, whatever the number of threads.
 constexpr std::size_t kPieces = 16;
+/// Neighbours say the same; every other pixel is plenty.
+constexpr std::size_t kPixelStep = 2;
 /// The smoothness term is a guess, the pixels are measurements: it must not be needed by more.
 constexpr double kLargestTimeRatio = 1.5;
 
@@ -75,7 +77,7 @@ void add_pixels(Equations& equations, const Brackets& set, std::size_t channel, 
   std::vector<double> log_times;
   for (const Exposure& e : set.exposures) log_times.push_back(std::log(e.time_s));
   std::vector<Observation> seen;
-  for (std::size_t i = first; i < last; ++i) {
+  for (std::size_t i = first; i < last; i += kPixelStep) {
     seen.clear();
     for (std::size_t k = 0; k < set.exposures.size(); ++k) {
       const std::size_t value = set.exposures[k].picture.pixels[3 * i + channel];
@@ -157,30 +159,31 @@ void check_times(const Brackets& set, const ExposureCurve& curve) {
 }  // namespace
 
 std::vector<double> time_ratios(const Brackets& brackets, const ExposureCurve& curve) {
-  constexpr std::size_t kStep = 7;
+  constexpr std::size_t kStep = 29;
   const std::size_t pixels = static_cast<std::size_t>(brackets.width()) * brackets.height();
-  const auto& table = curve.exposure_from_value[1];
+  std::array<double, 256> logs{};
+  for (std::size_t v = 1; v < 256; ++v) logs[v] = std::log(curve.exposure_from_value[1][v]);
   std::vector<double> ratios;
   for (std::size_t k = 0; k < brackets.exposures.size(); ++k) {
-    std::vector<double> logs;
+    std::vector<double> differences;
     for (std::size_t i = 0; i < pixels; i += kStep) {
-      const auto log_radiance = [&](std::size_t e, double& log) {
-        const std::size_t value = brackets.exposures[e].picture.pixels[3 * i + 1];
-        if (value < 16 || value > 240) return false;
-        log = std::log(table[value] / brackets.exposures[e].time_s);
-        return true;
+      const auto value_in = [&](std::size_t e) -> std::size_t {
+        return brackets.exposures[e].picture.pixels[3 * i + 1];
       };
-      double own = 0.0, other = 0.0;
-      if (!log_radiance(k, own)) continue;
+      const auto is_sure = [](std::size_t value) { return value >= 16 && value <= 240; };
+      if (!is_sure(value_in(k))) continue;
       for (std::size_t e = 0; e < brackets.exposures.size(); ++e)
-        if (e != k && log_radiance(e, other)) logs.push_back(own - other);
+        if (e != k && is_sure(value_in(e)))
+          differences.push_back(
+              logs[value_in(k)] - logs[value_in(e)] +
+              std::log(brackets.exposures[e].time_s / brackets.exposures[k].time_s));
     }
-    if (logs.empty()) {
+    if (differences.empty()) {
       ratios.push_back(1.0);
       continue;
     }
-    const auto middle = logs.begin() + static_cast<std::ptrdiff_t>(logs.size() / 2);
-    std::nth_element(logs.begin(), middle, logs.end());
+    const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+    std::nth_element(differences.begin(), middle, differences.end());
     ratios.push_back(std::exp(*middle));
   }
   return ratios;

@@ -16,7 +16,7 @@ class Capture : public Program {};
 
 TEST_F(Capture, WritesALitSceneThatReadsBack) {
   const Outcome got = run({"capture", kSoft, "--out", file("soft.lit"), "--patches", "300",
-                           "--samples", "2", "--json"});
+                           "--samples", "2", "--picture", file("patches.png"), "--json"});
   ASSERT_EQ(got.status, 0) << got.err;
   const json line = json::parse(got.out);
   const pipeline::LitScene scene = ar::read_lit_scene(file("soft.lit"));
@@ -26,6 +26,14 @@ TEST_F(Capture, WritesALitSceneThatReadsBack) {
             line["patches"]);
   EXPECT_GT(line["emitting"], 0);
   EXPECT_EQ(scene.probe.width, 256);
+  // The patches are the photograph's means: all in all as bright as it is.
+  const ar::Image patches = ar::read_image_rgb(file("patches.png"));
+  const ar::Image photograph = ar::read_image_rgb(kSoft / "background.png");
+  ASSERT_EQ(patches.pixels.size(), photograph.pixels.size());
+  double difference = 0.0;
+  for (std::size_t i = 0; i < patches.pixels.size(); ++i)
+    difference += static_cast<double>(patches.pixels[i]) - photograph.pixels[i];
+  EXPECT_NEAR(difference / static_cast<double>(patches.pixels.size()), 0.0, 6.0);
 }
 
 TEST_F(Capture, SaysWhatIsWrongInOneLineAndWritesNothing) {

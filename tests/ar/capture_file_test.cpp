@@ -24,9 +24,9 @@ const std::string kBall =
     "reflectance = 0.9\neye_m = [0, 0.5, 1]\ntarget_m = [0, 0.5, 0]\n";
 const std::string kModel = "[model]\nfile = \"room.glb\"\nleave_out = [\"bulb\"]\n";
 
-class Capture : public testing::Test {
+class CaptureToml : public testing::Test {
  protected:
-  Capture() {
+  CaptureToml() {
     for (const char* name : {"camera.yml", "photo.png", "list.json", "room.glb", "probe.hdr"})
       std::ofstream(folder_.path() / name) << "x";
   }
@@ -50,7 +50,7 @@ class Capture : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Capture, ReadsABallWithItsKeys) {
+TEST_F(CaptureToml, ReadsABallWithItsKeys) {
   const CaptureFile c = read(kHead + "patches = 700\n" + kPhotograph + kBall + kModel);
   EXPECT_EQ(c.patches, 700);
   EXPECT_EQ(c.photograph, folder_.path() / "photo.png");
@@ -70,7 +70,7 @@ TEST_F(Capture, ReadsABallWithItsKeys) {
   EXPECT_EQ(colored.patches, 1500);
 }
 
-TEST_F(Capture, ReadsABallAndPosesOfTheCaptureSetsForm) {
+TEST_F(CaptureToml, ReadsABallAndPosesOfTheCaptureSetsForm) {
   const std::string pose =
       "\"world_from_camera_opencv\": [[1,0,0,0],[0,1,0,0],[0,0,1,-1],[0,0,0,1]]";
   write("pose.json", "{" + pose + "}");
@@ -87,7 +87,7 @@ TEST_F(Capture, ReadsABallAndPosesOfTheCaptureSetsForm) {
   EXPECT_EQ(std::get<BallProbe>(c.probe).ball.reflectance.y, 0.92);
 }
 
-TEST_F(Capture, ReadsALatlongPicture) {
+TEST_F(CaptureToml, ReadsALatlongPicture) {
   const CaptureFile c = read(kHead + kPhotograph +
                              "[probe]\nlatlong = \"probe.hdr\"\ncenter_m = [0, 1, 0]\n"
                              "towards = [2, 0, 0]\nscale = [1, 2, 3]\n" +
@@ -97,7 +97,7 @@ TEST_F(Capture, ReadsALatlongPicture) {
   EXPECT_EQ(probe.scale, glm::dvec3(1, 2, 3));
 }
 
-TEST_F(Capture, NamesFileLineAndKeyOfWhatIsWrong) {
+TEST_F(CaptureToml, NamesFileLineAndKeyOfWhatIsWrong) {
   EXPECT_THAT(error_of(kHead + "photo = 1\n"), HasSubstr("capture.toml:3: photo: unknown key"));
   EXPECT_THAT(error_of(kHead + kPhotograph + "time = 1\n" + kBall + kModel),
               HasSubstr("capture.toml:8: [photograph].time: unknown key"));
@@ -114,7 +114,7 @@ TEST_F(Capture, NamesFileLineAndKeyOfWhatIsWrong) {
               HasSubstr("camera: no such file"));
 }
 
-TEST_F(Capture, RefusesPosesThatAreNoneOrTwo) {
+TEST_F(CaptureToml, RefusesPosesThatAreNoneOrTwo) {
   const std::string start =
       kHead + "[photograph]\nfile = \"photo.png\"\nbrackets = \"list.json\"\n";
   EXPECT_THAT(error_of(start + kBall + kModel),
@@ -133,7 +133,7 @@ TEST_F(Capture, RefusesPosesThatAreNoneOrTwo) {
               HasSubstr("expected 4 rows of 4 numbers"));
 }
 
-TEST_F(Capture, RefusesABallThatIsNone) {
+TEST_F(CaptureToml, RefusesABallThatIsNone) {
   const auto ball = [&](const std::string& keys) {
     return error_of(kHead + kPhotograph +
                     "[probe]\nbrackets = \"list.json\"\neye_m = [0, 0.5, 1]\n"
@@ -160,7 +160,7 @@ TEST_F(Capture, RefusesABallThatIsNone) {
               HasSubstr("towards: is not horizontal"));
 }
 
-TEST_F(Capture, AFolderWithoutItIsNamed) {
+TEST_F(CaptureToml, AFolderWithoutItIsNamed) {
   try {
     read_capture(folder_.path() / "none");
     FAIL();

@@ -42,7 +42,7 @@ class LitSceneFile : public testing::Test {
  protected:
   LitSceneFile() { write_lit_scene(path_, small_scene()); }
   json document() const { return json::parse(std::ifstream(path_)); }
-  std::string error_of(const std::string& text) const {
+  std::string error_of_text(const std::string& text) const {
     std::ofstream(path_, std::ios::binary) << text;
     try {
       read_lit_scene(path_);
@@ -54,7 +54,7 @@ class LitSceneFile : public testing::Test {
     }
     return "no error";
   }
-  std::string error_of(const json& document) const { return error_of(document.dump()); }
+  std::string error_of(const json& document) const { return error_of_text(document.dump()); }
 
   TemporaryFolder folder_;
   std::filesystem::path path_ = folder_.path() / "scene.lit";
@@ -92,9 +92,9 @@ TEST_F(LitSceneFile, RefusesAnotherFormatOrVersion) {
   EXPECT_THAT(error_of(d), HasSubstr("version: is not 1"));
   d["format"] = "another";
   EXPECT_THAT(error_of(d), HasSubstr("format: is not \"gnomon lit scene\""));
-  EXPECT_THAT(error_of("[]"), HasSubstr("not a JSON object"));
-  EXPECT_THAT(error_of(""), HasSubstr("not a JSON object"));
-  EXPECT_THAT(error_of(std::string(200000, '[')), HasSubstr("not a JSON object"));
+  EXPECT_THAT(error_of_text("[]"), HasSubstr("not a JSON object"));
+  EXPECT_THAT(error_of_text(""), HasSubstr("not a JSON object"));
+  EXPECT_THAT(error_of_text(std::string(200000, '[')), HasSubstr("not a JSON object"));
 }
 
 TEST_F(LitSceneFile, RefusesEveryMissingOrMistypedMember) {
@@ -119,12 +119,13 @@ TEST_F(LitSceneFile, RefusesEveryMissingOrMistypedMember) {
 }
 
 TEST_F(LitSceneFile, RefusesSizesThatDoNotFitBeforeItTakesMemory) {
-  json d = document();
+  const json whole = document();
+  json d = whole;
   d["model"]["patches"] = 99999;
   EXPECT_THAT(error_of(d), HasSubstr("patch_vertices: is not base64 of 299997 numbers"));
   d["model"]["patches"] = 1000000000000;
   EXPECT_THAT(error_of(d), HasSubstr("patches: is not a whole number within 1 to 100000"));
-  d = document();
+  d = whole;
   d["probe"]["width"] = 5;
   EXPECT_THAT(error_of(d), HasSubstr("radiance: is not base64 of 30 numbers"));
 }

@@ -55,19 +55,31 @@ TEST(MirrorBall, ThePointThatShowsAPlaceReflectsTheSightToIt) {
   const glm::dvec3 eye(-0.16, 0.56, 0.1);
   for (const glm::dvec3 place :
        {glm::dvec3(1.5, 2.0, 0.7), glm::dvec3(-2.0, 1.5, -0.25), glm::dvec3(0.3, 2.6, 0.1),
-        glm::dvec3(0.1, 0.0, -0.2), glm::dvec3(1.5, 0.4, -1.7)}) {
-    const glm::dvec3 point = mirror_point(ball, eye, glm::dvec4(place, 1.0));
+        glm::dvec3(0.1, 0.0, -0.2), glm::dvec3(1.5, 0.4, -0.5)}) {
+    const auto shown = mirror_point(ball, eye, glm::dvec4(place, 1.0));
+    ASSERT_TRUE(shown);
+    const glm::dvec3 point = *shown;
     EXPECT_NEAR(glm::length(point - ball.center_m), ball.radius_m, 1e-12);
     const auto hit = reflect(ball, {eye, glm::normalize(point - eye)});
     ASSERT_TRUE(hit);
-    expect_near(hit->ray.direction, glm::normalize(place - point), 1e-8);
+    expect_near(hit->ray.direction, glm::normalize(place - point), 1e-7);
     // At infinity: the direction itself.
     const glm::dvec3 far = glm::normalize(place - ball.center_m);
-    const glm::dvec3 other = mirror_point(ball, eye, glm::dvec4(far, 0.0));
-    const auto back = reflect(ball, {eye, glm::normalize(other - eye)});
+    const auto other = mirror_point(ball, eye, glm::dvec4(far, 0.0));
+    ASSERT_TRUE(other);
+    const auto back = reflect(ball, {eye, glm::normalize(*other - eye)});
     ASSERT_TRUE(back);
-    expect_near(back->ray.direction, far, 1e-8);
+    expect_near(back->ray.direction, far, 1e-7);
   }
+}
+
+TEST(MirrorBall, NoPointShowsWhatTheBallHides) {
+  const MirrorBall ball{{0, 0, -1}, 0.1, glm::dvec3(1.0)};
+  const glm::dvec3 eye(0.0);
+  EXPECT_FALSE(mirror_point(ball, eye, {0, 0, -5, 1}));
+  EXPECT_FALSE(mirror_point(ball, eye, {0.1, 0.2, -5, 1}));
+  // Just beside the ball's cone of shadow the rim shows it.
+  EXPECT_TRUE(mirror_point(ball, eye, {0.8, 0, -5, 1}));
 }
 
 TEST(MirrorBall, ItsOutlineIsTheConeOfSight) {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ar/error.h"
-#include "ar/lit_scene_file.h"
+#include "ar/image_file.h"
 #include "temporary_folder.h"
 
 namespace gnomon::ar {
@@ -67,7 +67,7 @@ TEST(SceneLight, FindsTheLampsOfTheRenderedRoom) {
 
 TEST(SceneLight, PhotographAndProbeAgreeAboutWhatBothSee) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(soft().photograph_over_probe[c], 1.0, 0.05);
-  EXPECT_GT(soft().from_photograph, 300u);
+  EXPECT_GT(soft().from_photograph, 150u);
   EXPECT_GT(soft().from_probe, 300u);
 }
 
@@ -130,6 +130,44 @@ class ChangedCapture : public testing::Test {
   }
 };
 
+/// A picture in Radiance's format, flat.
+void write_hdr(const fs::path& path, int width, int height, const std::vector<glm::vec3>& pixels) {
+  std::ofstream out(path, std::ios::binary);
+  out << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " << height << " +X " << width << "\n";
+  for (const glm::vec3& p : pixels) {
+    int exponent = 0;
+    std::frexp(std::max({p.x, p.y, p.z, 1e-9f}), &exponent);
+    for (int c = 0; c < 3; ++c)
+      out.put(static_cast<char>(static_cast<int>(std::ldexp(p[c], 8 - exponent))));
+    out.put(static_cast<char>(exponent + 128));
+  }
+}
+
+// The map of directions that the ball gave, in another unit, instead of the ball.
+TEST_F(ChangedCapture, ALatlongPictureServesAsProbeInAnyUnit) {
+  const TemporaryFolder folder;
+  const pipeline::DirectionMap& map = soft().scene.probe;
+  const glm::vec3 unit(5.0f, 3.0f, 8.0f);
+  std::vector<glm::vec3> pixels = map.radiance;
+  for (glm::vec3& p : pixels) p *= unit;
+  LatlongProbe probe;
+  probe.picture = folder.path() / "probe.hdr";
+  probe.center_m = glm::dvec3(map.center);
+  probe.towards = {0.0, 0.0, 1.0};
+  write_hdr(probe.picture, map.width, map.height, pixels);
+  capture_.probe = probe;
+  options_.patches = 1500;
+  options_.samples = 4;
+  const SceneLight light = find_scene_light(capture_, options_);
+  for (const char* name : {"ceiling_panel", "window"}) {
+    const Emitter found = emitter(light.scene, name), expected = emitter(soft().scene, name);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(found.radiance[c] / expected.radiance[c], 1.0, 0.1) << name << " channel " << c;
+  }
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(light.photograph_over_probe[c] * static_cast<double>(unit[c]), 1.0, 0.05);
+}
+
 TEST_F(ChangedCapture, ABallBesideThePictureIsRefused) {
   ball().ball.center_m = {0.0, 0.5, 3.0};
   EXPECT_THAT(error(), HasSubstr("the ball is not in the picture"));
@@ -149,7 +187,9 @@ TEST_F(ChangedCapture, AnotherTimeOfThePhotographIsRefused) {
 }
 
 TEST_F(ChangedCapture, PicturesOfAnotherSizeAreRefused) {
-  capture_.photograph = GNOMON_SOURCE_DIR "/examples/photo/photo.jpg";
+  const TemporaryFolder folder;
+  capture_.photograph = folder.path() / "small.png";
+  write_png(capture_.photograph, {4, 3, 3, std::vector<std::uint8_t>(36, 100)});
   EXPECT_THAT(error(), HasSubstr("pixels, but its brackets have 640 x 480"));
 }
 
