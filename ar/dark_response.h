@@ -17,8 +17,8 @@ namespace gnomon::ar {
 /// Values from here on are taken as known.
 inline constexpr std::size_t kFirstKnownValue = 24;
 
-/// Gives `curve` (exposure of each value of the channel) its entries below kFirstKnownValue from the
-/// entries above; where pixels do not tell, the curve goes on as a power law. Holds afterwards:
+/// Gives `curve` (exposure of each value of the channel) its entries below kFirstKnownValue from
+/// the entries above; where pixels do not tell, the curve goes on as a power law. Holds afterwards:
 /// these entries rise from 0 at value 0 to below the first known.
 void fit_dark_values(std::span<const Brackets> sets, std::size_t channel, int threads,
                      std::array<double, 256>& curve);
