@@ -2,7 +2,9 @@
 // bounces), from which reflectances and hidden patches must be found again.
 #include "ar/patch_balance.h"
 
+#include <algorithm>
 #include <numbers>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -80,8 +82,10 @@ TEST_F(LitRoom, AHiddenPartOfALampShinesAsTheRest) {
       first = false;
     }
   const Balanced balanced = balance_patches(model_, *exchange_, hidden, 0);
-  for (std::size_t i = 0; i < radiance_.size(); ++i)
-    if (is_lamp(i)) EXPECT_NEAR(balanced.radiance[i].x, 20.0f, 1e-4f);
+  for (std::size_t i = 0; i < radiance_.size(); ++i) {
+    if (!is_lamp(i)) continue;
+    EXPECT_NEAR(balanced.radiance[i].x, 20.0f, 1e-4f);
+  }
 }
 
 TEST_F(LitRoom, WithoutLightReflectanceIsBounded) {
