@@ -4,7 +4,7 @@ set output "docs/images/intensity.svg"
 set multiplot layout 1,3
 set xlabel "hidden patches"
 set xrange [0:50]
-set key top right
+set key top left
 do for [i=0:2] {
   set title word("0/100 25/75 50/50", i + 1)
   set ylabel (i == 0 ? "variance of the error" : "")
