@@ -125,11 +125,11 @@ TEST_F(DifferentialSession, NamesEachPassAsThePaperDoes) {
           {.steps = true});
   std::vector<std::string> labels;
   for (const PassNote& pass : result.augmented->passes) labels.push_back(pass.label);
-  EXPECT_THAT(labels, testing::ElementsAre(
-                          "background image", "scene model into the depth buffer",
-                          "synthetic objects", "shadow volumes: source 0", "subtract source 0",
-                          "shadow volumes: source 1", "subtract source 1",
-                          "shadow volumes: source 2", "subtract source 2"));
+  EXPECT_THAT(labels, testing::ElementsAre("background image", "scene model into the depth buffer",
+                                           "synthetic objects", "shadow volumes: source 0",
+                                           "subtract source 0", "shadow volumes: source 1",
+                                           "subtract source 1", "shadow volumes: source 2",
+                                           "subtract source 2"));
   EXPECT_EQ(result.augmented->steps.size(), labels.size());
 }
 
