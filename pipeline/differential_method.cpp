@@ -236,15 +236,21 @@ void DifferentialMethod::color_objects(const ObjectRadiance& radiance,
 /// that is far from it, and a thousand times less work than all its patches.
 void DifferentialMethod::take_from_objects(const ObjectRadiance& radiance,
                                            const DifferentialOptions& options) {
-  taken_.clear();
-  if (!options.self_shadows) return;
+  if (!options.self_shadows) {
+    taken_.clear();
+    return;
+  }
   const std::size_t count = shadows_.shadows.size();
   std::vector<std::uint8_t> first_set(count);
   for (std::size_t j = 0; j < count; ++j)
     first_set[j] = in_first_set(shadows_.shadows[j].cluster.brightest, options.take.first_share);
   taken_.resize(count);
   for (ObjectColors& colors : taken_) {
-    colors = drawn_;
+    colors.resize(drawn_.size());
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+      colors[i].resize(drawn_[i].size());
+      for (std::size_t p = 0; p < drawn_[i].size(); ++p) colors[i][p].resize(drawn_[i][p].size());
+    }
   }
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const Object& object = *placed_[i].object;

@@ -76,11 +76,6 @@ struct DifferentialReference::World {
     }
   }
 
-  std::array<glm::dvec3, 3> corners(const Patch& patch) const {
-    return {scene.model.corner(patch, 0), scene.model.corner(patch, 1),
-            scene.model.corner(patch, 2)};
-  }
-
   /// What virtual objects take from a receiver's point, as irradiance over pi.
   glm::dvec3 hidden(const glm::dvec3& point, const glm::dvec3& normal, int samples) const {
     glm::dvec3 sum(0.0);
@@ -91,7 +86,7 @@ struct DifferentialReference::World {
           }))
         continue;
       const Patch& patch = scene.model.patches[i];
-      const double factor = form_factor(point, normal, corners(patch));
+      const double factor = form_factor(point, normal, scene.model.corners(patch));
       if (factor <= 0.0) continue;
       const double share = hidden_share(patch, point, normal, samples);
       sum += glm::dvec3(scene.radiance[i]) * (factor * share);
@@ -114,7 +109,7 @@ struct DifferentialReference::World {
     for (std::size_t i = 0; i < patch_spheres.size(); ++i) {
       if (scene.radiance[i] == glm::vec3(0.0f)) continue;
       const Patch& patch = scene.model.patches[i];
-      const double factor = form_factor(point, normal, corners(patch));
+      const double factor = form_factor(point, normal, scene.model.corners(patch));
       if (factor <= 0.0) continue;
       const double share = patches.share_of_samples(
           patch, point, normal, samples, [&](const glm::dvec3& from, const glm::dvec3& to) {

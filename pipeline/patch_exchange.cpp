@@ -19,8 +19,7 @@ PatchExchange::PatchExchange(const PatchModel& model, const PatchVisibility& vis
   raster::require(patches_ <= kMostPatches, "light between patches is found for 8192 at most");
   factors_.assign(patches_ * patches_, 0.0f);
   std::vector<std::array<glm::dvec3, 3>> triangles;
-  for (const Patch& p : model.patches)
-    triangles.push_back({model.corner(p, 0), model.corner(p, 1), model.corner(p, 2)});
+  for (const Patch& p : model.patches) triangles.push_back(model.corners(p));
   raster::for_each_chunk(
       patches_, kReceiversAChunk, threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
 #include <embree3/rtcore.h>
 #include <glm/geometric.hpp>
 
+#include "pipeline/embree_ray.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -27,19 +29,6 @@ double edge_term(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& nor
   // The edge runs through the point, or is none: its angle times its share of the normal is 0.
   if (!(length > 0.0)) return 0.0;
   return std::atan2(length, glm::dot(a, b)) * glm::dot(across, normal) / length;
-}
-
-RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, float far) {
-  RTCRay ray{};
-  ray.org_x = static_cast<float>(origin.x);
-  ray.org_y = static_cast<float>(origin.y);
-  ray.org_z = static_cast<float>(origin.z);
-  ray.dir_x = static_cast<float>(direction.x);
-  ray.dir_y = static_cast<float>(direction.y);
-  ray.dir_z = static_cast<float>(direction.z);
-  ray.tfar = far;
-  ray.mask = 0xffffffffu;
-  return ray;
 }
 
 /// The centroids of a triangle cut in `samples` = 4^k, as weights of its corners.
@@ -138,7 +127,7 @@ const PatchModel& PatchVisibility::model() const { return world_->model; }
 bool PatchVisibility::sees(const glm::dvec3& from, const glm::dvec3& to) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay ray = make_ray(from, to - from, 1.0f);
+  RTCRay ray = make_ray(from, to - from, 1.0);
   rtcOccluded1(world_->scene, &context, &ray);
   return !(ray.tfar < 0.0f);
 }
@@ -155,7 +144,7 @@ PatchVisibility::Hit PatchVisibility::trace(const glm::dvec3& origin,
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{};
-  query.ray = make_ray(origin, direction, std::numeric_limits<float>::infinity());
+  query.ray = make_ray(origin, direction, std::numeric_limits<double>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(world_->scene, &context, &query);
   Hit hit;
@@ -176,8 +165,7 @@ glm::dvec3 irradiance(const PatchModel& model, const std::vector<glm::vec3>& rad
   for (std::size_t i = 0; i < model.patches.size(); ++i) {
     if (radiance[i] == glm::vec3(0.0f)) continue;
     const Patch& patch = model.patches[i];
-    const double factor = form_factor(
-        point, normal, {model.corner(patch, 0), model.corner(patch, 1), model.corner(patch, 2)});
+    const double factor = form_factor(point, normal, model.corners(patch));
     if (factor <= 0.0) continue;
     sum += glm::dvec3(radiance[i]) *
            (std::numbers::pi * factor * visibility.visible_share(patch, point, normal, samples));

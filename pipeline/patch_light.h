@@ -47,8 +47,7 @@ class PatchVisibility {
   template <class Counts>
   double share_of_samples(const Patch& patch, const glm::dvec3& point, const glm::dvec3& normal,
                           int samples, const Counts& counts) const {
-    const PatchModel& of = model();
-    const glm::dvec3 a = of.corner(patch, 0), b = of.corner(patch, 1), c = of.corner(patch, 2);
+    const auto [a, b, c] = model().corners(patch);
     const glm::dvec3 from = lifted(point, normal);
     int counted = 0, asked = 0;
     for (const glm::dvec3& weights : patch_samples(samples)) {

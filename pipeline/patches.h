@@ -46,6 +46,9 @@ struct PatchModel {
   glm::dvec3 corner(const Patch& patch, std::size_t k) const {
     return glm::dvec3(vertices[patch.vertices[k]].position);
   }
+  std::array<glm::dvec3, 3> corners(const Patch& patch) const {
+    return {corner(patch, 0), corner(patch, 1), corner(patch, 2)};
+  }
 };
 
 /// Makes a patch of three vertices that exist. Precondition: they span an area.

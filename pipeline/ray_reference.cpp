@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "pipeline/embree_ray.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -66,20 +67,6 @@ bool belongs(const Body& body, Among among) {
 }
 
 std::size_t slot(Among among) { return static_cast<std::size_t>(among); }
-
-RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, double near, double far) {
-  RTCRay ray{};
-  ray.org_x = static_cast<float>(origin.x);
-  ray.org_y = static_cast<float>(origin.y);
-  ray.org_z = static_cast<float>(origin.z);
-  ray.dir_x = static_cast<float>(direction.x);
-  ray.dir_y = static_cast<float>(direction.y);
-  ray.dir_z = static_cast<float>(direction.z);
-  ray.tnear = static_cast<float>(near);
-  ray.tfar = static_cast<float>(far);
-  ray.mask = 0xffffffffu;
-  return ray;
-}
 
 }  // namespace
 
@@ -143,7 +130,7 @@ RayHit RayReference::trace(const Ray& ray, Among visible) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{};
-  query.ray = make_ray(ray.origin, ray.direction, 0.0, std::numeric_limits<double>::infinity());
+  query.ray = make_ray(ray.origin, ray.direction, std::numeric_limits<double>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(world_->visible[slot(visible)], &context, &query);
   RayHit result;
@@ -169,7 +156,7 @@ bool RayReference::blocked(const glm::dvec3& point, const glm::vec4& light, Amon
   const bool directional = light.w == 0.0f;
   const glm::dvec3 towards = directional ? glm::dvec3(light) : glm::dvec3(light) - point;
   RTCRay ray =
-      make_ray(point, towards, 0.0, directional ? std::numeric_limits<double>::infinity() : 1.0);
+      make_ray(point, towards, directional ? std::numeric_limits<double>::infinity() : 1.0);
   rtcOccluded1(world_->casters[slot(casters)], &context, &ray);
   return ray.tfar < 0.0f;
 }

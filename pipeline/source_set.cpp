@@ -46,9 +46,7 @@ Transfers compute_transfers(const LitScene& scene, const TransferOptions& option
           for (std::size_t s = 0; s < transfers.sources.size(); ++s) {
             const std::uint32_t source = transfers.sources[s];
             const Patch& patch = model.patches[source];
-            const double factor = form_factor(
-                point, normal,
-                {model.corner(patch, 0), model.corner(patch, 1), model.corner(patch, 2)});
+            const double factor = form_factor(point, normal, model.corners(patch));
             if (factor <= 0.0) continue;
             const double seen = visibility.visible_share(patch, point, normal, options.samples);
             transfers.radiance[s * transfers.vertices + v] = glm::vec3(

@@ -6,22 +6,13 @@
 #include <glm/vec3.hpp>
 
 #include "pipeline/patch_light.h"
+#include "tests/pipeline/patch_rooms.h"
 #include "tests/pipeline/test_meshes.h"
 
 namespace gnomon::test {
 namespace {
 
 constexpr const char* kPanel = "panel";
-
-/// A rectangle from its corner along two edges, facing cross(u, v).
-pipeline::Object rectangle(const char* name, const glm::vec3& corner, const glm::vec3& u,
-                           const glm::vec3& v) {
-  pipeline::Mesh mesh;
-  for (const glm::vec3& p : {corner, corner + u, corner + u + v, corner + v})
-    mesh.positions.emplace_back(p, 1.0f);
-  mesh.indices = {0, 1, 2, 0, 2, 3};
-  return {.name = name, .role = pipeline::Role::phantom, .model = model_of(mesh)};
-}
 
 }  // namespace
 

@@ -19,6 +19,7 @@
 
 #include "ar/image_file.h"
 #include "ar/tracker.h"
+#include "capture_json.h"
 #include "statistics.h"
 
 namespace gnomon::ar {
@@ -29,19 +30,6 @@ using nlohmann::json;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kFlip_deg = 5.0;
-
-json load(const fs::path& file) {
-  std::ifstream in(file);
-  return json::parse(in);
-}
-
-glm::dmat4 matrix(const json& rows) {
-  glm::dmat4 m(1.0);
-  for (int r = 0; r < 4; ++r) {
-    for (int c = 0; c < 4; ++c) m[c][r] = rows.at(r).at(c).get<double>();
-  }
-  return m;
-}
 
 struct Picture {
   Image image;
@@ -69,10 +57,10 @@ void read_layout(const json& tags, const std::string& variant, Capture& capture)
     const std::string body = tag.at("attached_to").get<std::string>();
     const double size_m = tag.at("size").get<double>();
     if (body.starts_with("world")) {
-      capture.layout.world.tags.push_back({id, size_m, matrix(tag.at("world_from_tag"))});
+      capture.layout.world.tags.push_back({id, size_m, matrix_of(tag.at("world_from_tag"))});
     } else {
       capture.layout.bodies.push_back({body, {{id, size_m}}});
-      if (body != kHandle) capture.world_from_body[body] = matrix(tag.at("world_from_tag"));
+      if (body != kHandle) capture.world_from_body[body] = matrix_of(tag.at("world_from_tag"));
     }
   }
 }
@@ -80,8 +68,9 @@ void read_layout(const json& tags, const std::string& variant, Capture& capture)
 Capture read_capture(const fs::path& dir) {
   Capture capture;
   capture.camera = read_camera(dir / "../camera.yml");
-  read_layout(load(dir / "../tags.json"), dir.filename().string(), capture);
-  const glm::dmat4 still = matrix(load(dir / "camera_pose.json").at("world_from_camera_opencv"));
+  read_layout(load_json(dir / "../tags.json"), dir.filename().string(), capture);
+  const glm::dmat4 still =
+      matrix_of(load_json(dir / "camera_pose.json").at("world_from_camera_opencv"));
   capture.background.push_back({read_image(dir / "background.png"), still, {}});
   std::set<fs::path> folders;
   for (const auto& entry : fs::directory_iterator(dir / "truth")) folders.insert(entry.path());
@@ -89,12 +78,12 @@ Capture read_capture(const fs::path& dir) {
     capture.truth.push_back({read_image(folder / "photo.png"), still, {}});
   }
   if (fs::exists(dir / "video/poses.json")) {
-    const json poses = load(dir / "video/poses.json");
+    const json poses = load_json(dir / "video/poses.json");
     capture.video_fps = poses.at("fps").get<double>();
     for (const json& frame : poses.at("frames")) {
       capture.video.push_back({read_image(dir / "video" / frame.at("file").get<std::string>()),
-                               matrix(frame.at("world_from_camera_opencv")),
-                               matrix(frame.at("world_from_handle"))});
+                               matrix_of(frame.at("world_from_camera_opencv")),
+                               matrix_of(frame.at("world_from_handle"))});
     }
   }
   if (fs::exists(dir / "response.json")) capture.response = dir / "response.json";

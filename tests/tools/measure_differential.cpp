@@ -23,6 +23,7 @@
 #include "ar/lit_scene_file.h"
 #include "ar/model_file.h"
 #include "ar/stopwatch.h"
+#include "capture_json.h"
 #include "pipeline/differential_reference.h"
 #include "statistics.h"
 
@@ -33,19 +34,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using pipeline::ShadowMask;
 using pipeline::ShadowPrecision;
-
-json load(const fs::path& file) {
-  std::ifstream in(file);
-  return json::parse(in);
-}
-
-glm::dmat4 matrix(const json& rows) {
-  glm::dmat4 m(1.0);
-  for (int r = 0; r < 4; ++r) {
-    for (int c = 0; c < 4; ++c) m[c][r] = rows.at(r).at(c).get<double>();
-  }
-  return m;
-}
 
 struct Truth {
   std::string name;
@@ -67,7 +55,8 @@ Capture read(const fs::path& lit, const fs::path& capture, const fs::path& truth
   out.background = read_image_rgb(capture / "background.png");
   out.camera = camera_for_picture(read_camera(capture / "camera.yml"), out.background.width,
                                   out.background.height);
-  out.world_from_camera = matrix(load(capture / "camera_pose.json").at("world_from_camera_opencv"));
+  out.world_from_camera =
+      matrix_of(load_json(capture / "camera_pose.json").at("world_from_camera_opencv"));
   std::set<fs::path> folders;
   for (const auto& entry : fs::directory_iterator(truth)) {
     if (entry.is_directory()) folders.insert(entry.path());
@@ -77,13 +66,13 @@ Capture read(const fs::path& lit, const fs::path& capture, const fs::path& truth
               read_image_rgb(folder / "photo.png"),
               read_image(folder / "object_mask.png"),
               {}};
-    const json pose = load(folder / "pose.json");
+    const json pose = load_json(folder / "pose.json");
     for (const json& object : pose.at("objects")) {
       const std::string model = object.at("model").get<std::string>();
       one.scene.objects.push_back(
           {.name = model,
            .model = std::make_shared<const pipeline::Model>(load_model(capture / model).model),
-           .world_from_model = glm::mat4(matrix(object.at("world_from_object")))});
+           .world_from_model = glm::mat4(matrix_of(object.at("world_from_object")))});
     }
     out.truths.push_back(std::move(one));
   }
