@@ -88,12 +88,13 @@ Augmented Augmenter::augment(const Image& photograph, const pipeline::Scene& sce
   at.execute(frame, out);
   out.execute_ms = watch.lap_ms();
 
-  out.composite = composite(at.view, photograph, resampled, *at.color);
+  const int threads = at.options.threads;
+  out.composite = composite(at.view, photograph, resampled, at.color->to_rgba8_rows(), threads);
   if (at.masks) {
     const std::vector<std::uint8_t> rows = at.masks->to_rgba8_rows();
-    out.shadow_mask = mask_at_photo(at.view, rows, 0);
-    out.shadow_on_virtual = mask_at_photo(at.view, rows, 1);
-    out.object_mask = mask_at_photo(at.view, rows, 2);
+    out.shadow_mask = mask_at_photo(at.view, rows, 0, threads);
+    out.shadow_on_virtual = mask_at_photo(at.view, rows, 1, threads);
+    out.object_mask = mask_at_photo(at.view, rows, 2, threads);
   }
   out.composite_ms = watch.lap_ms();
   return out;

@@ -4,10 +4,14 @@
 #include <cmath>
 
 #include "raster/check.h"
+#include "raster/executor.h"
 
 namespace gnomon::ar {
 
 namespace {
+
+/// Of the photograph, one thread's at a time.
+constexpr std::size_t kRows = 16;
 
 /// View pixels u0 <= u < u1, v0 <= v < v1, v from the top.
 struct Footprint {
@@ -100,19 +104,23 @@ double covered_share(const PinholeView& view, const std::vector<std::uint8_t>& r
 }
 
 Image composite(const PinholeView& view, const Image& photograph, const Image& resampled,
-                const raster::ColorBuffer& drawn) {
-  raster::require(drawn.width() == view.width() && drawn.height() == view.height() &&
+                const std::vector<std::uint8_t>& drawn_rows, int threads) {
+  raster::require(drawn_rows.size() == std::size_t{4} * view.width() * view.height() &&
                       resampled.width == view.width() && resampled.height == view.height(),
                   "the drawing and the resampled photograph have the view's size");
-  const std::vector<std::uint8_t> rows = drawn.to_rgba8_rows();
   Image out = photograph;
-  for (int y = 0; y < out.height; ++y)
+  const auto take_row = [&](int y) {
+    const std::uint8_t* from = &drawn_rows[4 * from_bottom(view, 0, y)];
+    std::uint8_t* to = out.at(0, y);
+    for (int x = 0; x < out.width; ++x, from += 4, to += 3) std::copy_n(from, 3, to);
+  };
+  const auto mix_row = [&](int y) {
     for (int x = 0; x < out.width; ++x) {
       const glm::vec2 center = view.view_from_photo(x, y);
       if (std::isnan(center.x)) continue;
       const Footprint at = footprint(view, center);
-      if (untouched(view, at, resampled, rows)) continue;
-      const Sums sum = gather(view, at, resampled, rows);
+      if (untouched(view, at, resampled, drawn_rows)) continue;
+      const Sums sum = gather(view, at, resampled, drawn_rows);
       const double share = sum.object_share / at.count();
       for (int c = 0; c < 3; ++c) {
         const double kept = sum.resampled[c] > 0.0 ? sum.drawn[c] / sum.resampled[c] : 1.0;
@@ -121,6 +129,14 @@ Image composite(const PinholeView& view, const Image& photograph, const Image& r
         out.at(x, y)[c] = static_cast<std::uint8_t>(std::lrint(std::clamp(value, 0.0, 255.0)));
       }
     }
+  };
+  raster::for_each_chunk(static_cast<std::size_t>(out.height), kRows, threads,
+                         [&](std::size_t first, std::size_t last) {
+                           for (std::size_t y = first; y < last; ++y) {
+                             const int row = static_cast<int>(y);
+                             view.is_identity() ? take_row(row) : mix_row(row);
+                           }
+                         });
   return out;
 }
 

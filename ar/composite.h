@@ -6,7 +6,6 @@
 
 #include "ar/image.h"
 #include "ar/pinhole_view.h"
-#include "raster/buffers.h"
 
 namespace gnomon::ar {
 
@@ -14,10 +13,11 @@ namespace gnomon::ar {
 /// bytes. Elsewhere, over the view pixels that a photograph's pixel spans: the drawn colour where a
 /// virtual object is visible (alpha, by its share), and the photograph's own value times drawn /
 /// resampled for the rest, so that a shadow keeps the photograph's detail and noise. Through an
-/// identity view this is the drawn picture. Preconditions: `drawn` has the view's size, `resampled`
-/// is view.resample(photograph).
+/// identity view this is the drawn picture. `drawn_rows` are r, g, b, a from the bottom row, as
+/// ColorBuffer::to_rgba8_rows gives them; the result is the same for every number of threads.
+/// Preconditions: they have the view's size, `resampled` is view.resample(photograph).
 Image composite(const PinholeView& view, const Image& photograph, const Image& resampled,
-                const raster::ColorBuffer& drawn);
+                const std::vector<std::uint8_t>& drawn_rows, int threads = 0);
 
 /// The share of a photograph's pixel, as a square of the view, where a channel of the view's rows
 /// (r, g, b, a from the bottom row) is 255 and not 0; view pixels that the square cuts count by the

@@ -4,15 +4,24 @@
 
 #include "ar/composite.h"
 #include "ar/false_color.h"
+#include "raster/executor.h"
 
 namespace gnomon::ar {
 
 Image mask_at_photo(const PinholeView& view, const std::vector<std::uint8_t>& rgba_rows,
-                    std::size_t channel) {
+                    std::size_t channel, int threads) {
+  constexpr std::size_t kRows = 16;
   Image out{view.photo_width(), view.photo_height(), 1, {}};
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x)
-      out.pixels.push_back(covered_share(view, rgba_rows, channel, x, y) >= 0.5 ? 255 : 0);
+  out.pixels.resize(static_cast<std::size_t>(out.width) * out.height);
+  raster::for_each_chunk(static_cast<std::size_t>(out.height), kRows, threads,
+                         [&](std::size_t first, std::size_t last) {
+                           for (std::size_t y = first; y < last; ++y) {
+                             const int row = static_cast<int>(y);
+                             for (int x = 0; x < out.width; ++x)
+                               *out.at(x, row) =
+                                   covered_share(view, rgba_rows, channel, x, row) >= 0.5 ? 255 : 0;
+                           }
+                         });
   return out;
 }
 

@@ -12,9 +12,9 @@
 namespace gnomon::ar {
 
 /// A mask of the view (rows r, g, b, a from the bottom row): 255 where at least half of a pixel's
-/// area belongs to it, else 0.
+/// area belongs to it, else 0. The same for every number of threads.
 Image mask_at_photo(const PinholeView& view, const std::vector<std::uint8_t>& rgba_rows,
-                    std::size_t channel);
+                    std::size_t channel, int threads = 0);
 
 /// Three channels, clamped and rounded to 8 bits.
 Image color_at_photo(const PinholeView& view, const raster::ColorBuffer& color);

@@ -88,7 +88,8 @@ TEST(Composite, OfAnUntouchedDrawingIsThePhotographToTheByte) {
     for (const int samples : {1, 2, 4}) {
       const PinholeView view{Lens(camera(distorted)), samples};
       const Image resampled = view.resample(photo);
-      EXPECT_EQ(composite(view, photo, resampled, drawn_from(resampled)).pixels, photo.pixels);
+      EXPECT_EQ(composite(view, photo, resampled, drawn_from(resampled).to_rgba8_rows()).pixels,
+                photo.pixels);
     }
 }
 
@@ -100,7 +101,7 @@ TEST(Composite, ThroughAnIdentityViewIsTheDrawing) {
     for (std::size_t c = 0; c < 3; ++c) drawn.rgba8().at(x, 10)[c] /= 2;  // a shadow
     drawn.rgba8().at(x, 30) = {200, 100, 50, 255};                        // an object
   }
-  const Image out = composite(view, photo, photo, drawn);
+  const Image out = composite(view, photo, photo, drawn.to_rgba8_rows());
   for (int y = 0; y < 60; ++y)
     for (int x = 0; x < 80; ++x)
       for (std::size_t c = 0; c < 3; ++c)
@@ -116,7 +117,7 @@ TEST(Composite, AShadowScalesThePhotographThroughAnyLens) {
   const Image resampled = view.resample(photo);
   Image darkened = resampled;
   for (std::uint8_t& v : darkened.pixels) v = static_cast<std::uint8_t>(std::lround(0.6 * v));
-  const Image out = composite(view, photo, resampled, drawn_from(darkened));
+  const Image out = composite(view, photo, resampled, drawn_from(darkened).to_rgba8_rows());
   for (std::size_t i = 0; i < out.pixels.size(); ++i)
     ASSERT_NEAR(out.pixels[i], 0.6 * photo.pixels[i], 1.5);
 }
