@@ -75,13 +75,14 @@ class Reader {
           fmt::format("{}: no folder of this name", capture_.file.parent_path().string()));
     const toml::table root = load_toml(capture_.file, kMaxCaptureBytes, kCaptureFormat);
     const TomlTable top(capture_.file, root, "",
-                        {"format", "camera", "patches", "photograph", "probe", "model"});
+                        {"format", "camera", "patches", "photograph", "probe", "sun", "model"});
     capture_.camera = top.required("camera", top.file("camera"));
     capture_.patches =
         top.integer("patches", 1, static_cast<int>(pipeline::PatchExchange::kMostPatches))
             .value_or(capture_.patches);
     read_photograph(required(top, "photograph"));
     read_probe(required(top, "probe"));
+    if (const toml::table* sun = top.table("sun")) read_sun(*sun);
     read_model(required(top, "model"));
     return std::move(capture_);
   }
@@ -173,6 +174,19 @@ class Reader {
     }
     probe.scale = t.vector("scale", 1e-12, 1e12);
     capture_.probe = probe;
+  }
+
+  void read_sun(const toml::table& table) {
+    const TomlTable t(capture_.file, table, "[sun]", {"direction", "irradiance", "through"});
+    CapturedSun sun;
+    const glm::dvec3 direction =
+        t.required("direction", t.vector("direction", -kMaxMetres, kMaxMetres));
+    const double length = glm::length(direction);
+    if (!(length > 1e-9)) t.fail("direction", "has no length");
+    sun.direction = direction / length;
+    sun.irradiance = t.vector("irradiance", 0.0, 1e12);
+    sun.through = t.texts("through").value_or(std::vector<std::string>());
+    capture_.sun = sun;
   }
 
   void read_model(const toml::table& table) {

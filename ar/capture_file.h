@@ -41,6 +41,17 @@ struct LatlongProbe {
   std::optional<glm::dvec3> scale;
 };
 
+/// Sunlight in the scene.
+struct CapturedSun {
+  /// Towards it, of unit length.
+  glm::dvec3 direction{0.0, 1.0, 0.0};
+  /// Of a surface that faces it, in the photograph's radiance times steradian; absent: found from
+  /// patches that it lights beside those that it does not.
+  std::optional<glm::dvec3> irradiance;
+  /// Names of the model's surfaces that it shines through.
+  std::vector<std::string> through;
+};
+
 struct CaptureFile {
   std::filesystem::path file, camera;
   /// The picture to be augmented, and its view's list of exposures.
@@ -50,6 +61,7 @@ struct CaptureFile {
   /// Of the photograph, in OpenCV's axes.
   glm::dmat4 world_from_camera{1.0};
   std::variant<BallProbe, LatlongProbe> probe;
+  std::optional<CapturedSun> sun;
   std::filesystem::path model;
   /// Names of the model's nodes that are not in the scene.
   std::vector<std::string> leave_out;

@@ -22,7 +22,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::string_view kFormat = "gnomon lit scene";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr int kMaxMapSide = 4096;
 constexpr std::size_t kMaxPatches = 100'000;
 constexpr float kLargest = 1e30f;
@@ -51,7 +51,9 @@ ordered_json model_json(const pipeline::PatchModel& model) {
           {"normals", base64_of(normals)},
           {"patches", model.patches.size()},
           {"patch_vertices", base64_from_integers(corners)},
-          {"patch_surface", base64_from_integers(surfaces)}};
+          {"patch_surface", base64_from_integers(surfaces)},
+          {"distant_patches", model.patches.size() - model.near_count()},
+          {"clear_surfaces", model.clear_surfaces}};
 }
 
 /// Reads one file, and says where in it something is wrong.
@@ -67,7 +69,7 @@ class Reader {
     if (!root_.contains("format") || root_["format"] != kFormat)
       fail("format", fmt::format("is not \"{}\"", kFormat));
     if (!root_.contains("version") || root_["version"] != kVersion)
-      fail("version", fmt::format("is not {}, which is read", kVersion));
+      fail("version", fmt::format("is not {}, which is read: capture the scene again", kVersion));
     pipeline::LitScene scene;
     read_model(scene.model);
     const std::size_t patches = scene.model.patches.size();
@@ -154,6 +156,21 @@ class Reader {
           model, {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}, surfaces[i]));
       if (!(model.patches.back().area_m2 > 0.0))
         fail("patch_vertices", fmt::format("patch {} has no area", i));
+    }
+    read_distant(object, model);
+  }
+
+  void read_distant(const json& object, pipeline::PatchModel& model) const {
+    const std::size_t count = size(object, "distant_patches", 0, model.patches.size() - 1);
+    for (std::size_t i = 0; i < count; ++i)
+      model.patches[model.patches.size() - 1 - i].distant = true;
+    const json& clear = member(object, "clear_surfaces");
+    if (!clear.is_array() || clear.size() > model.surfaces.size())
+      fail("clear_surfaces", "is not a list of surfaces");
+    for (const json& surface : clear) {
+      if (!surface.is_number_unsigned() || surface.get<std::uint64_t>() >= model.surfaces.size())
+        fail("clear_surfaces", fmt::format("{} is no surface's number", surface.dump()));
+      model.clear_surfaces.push_back(surface.get<std::uint32_t>());
     }
   }
 

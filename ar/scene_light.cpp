@@ -22,6 +22,8 @@
 #include "ar/response_fit.h"
 #include "ar/share_radiance.h"
 #include "ar/stopwatch.h"
+#include "ar/sun_light.h"
+#include "pipeline/sun.h"
 
 namespace gnomon::ar {
 namespace {
@@ -179,9 +181,25 @@ class Work {
     if (model().patches.size() > pipeline::PatchExchange::kMostPatches)
       throw InputError(fmt::format("{}: {} triangles, of at most {}", capture_.model.string(),
                                    model().patches.size(), pipeline::PatchExchange::kMostPatches));
+    add_sun();
     visibility_.emplace(model());
     known_.assign(model().patches.size(), false);
     radiance_.assign(model().patches.size(), glm::dvec3(0.0));
+  }
+
+  /// Its patch comes after all others, with a radiance that is found with the balance.
+  void add_sun() {
+    if (!capture_.sun) return;
+    std::vector<std::uint32_t> through;
+    for (const std::string& name : capture_.sun->through) {
+      const auto at = std::ranges::find(model().surfaces, name);
+      if (at == model().surfaces.end())
+        throw InputError(fmt::format("{}: [sun].through: {} has no surface '{}'",
+                                     capture_.file.string(), capture_.model.string(), name));
+      through.push_back(static_cast<std::uint32_t>(at - model().surfaces.begin()));
+    }
+    pipeline::add_sun(model(), capture_.sun->direction, std::move(through));
+    surface_reflectance_.emplace_back(0.0f);
   }
 
   pipeline::PatchModel& model() { return result_.scene.model; }
@@ -264,7 +282,7 @@ class Work {
       known_[i] = true;
       radiance_[i] = seen.radiance[i];
     }
-    result_.filled = known_.size() - result_.from_photograph - result_.from_probe;
+    result_.filled = model().near_count() - result_.from_photograph - result_.from_probe;
   }
 
   /// Brings a latitude-longitude picture, in whatever unit, to the photograph's.
@@ -284,12 +302,30 @@ class Work {
   void balance() {
     const pipeline::PatchExchange exchange(model(), *visibility_, options_.visibility_samples,
                                            options_.threads);
-    Balanced balanced = balance_patches(
-        model(), exchange, {radiance_, known_, surface_reflectance_}, options_.threads);
+    BalanceInput input{std::move(radiance_), std::move(known_), surface_reflectance_};
+    if (capture_.sun) set_sun(exchange, input);
+    Balanced balanced = balance_patches(model(), exchange, input, options_.threads);
     result_.scene.radiance = std::move(balanced.radiance);
     result_.scene.reflectance = std::move(balanced.reflectance);
     result_.emitting =
         static_cast<std::size_t>(std::count(balanced.emits.begin(), balanced.emits.end(), true));
+  }
+
+  void set_sun(const pipeline::PatchExchange& exchange, BalanceInput& input) {
+    const std::uint32_t sun = pipeline::sun_patch(model());
+    input.known[sun] = true;
+    std::optional<glm::dvec3> irradiance = capture_.sun->irradiance;
+    if (!irradiance) {
+      irradiance = find_sun_irradiance(model(), exchange, *visibility_, input, options_.threads);
+      if (!irradiance)
+        throw InputError(fmt::format(
+            "{}: [sun].irradiance: missing, and no surface is seen both in the sun and in the "
+            "shade that would tell it",
+            capture_.file.string()));
+      note(fmt::format("sunlight: {:.3g} {:.3g} {:.3g} on a surface that faces it", irradiance->x,
+                       irradiance->y, irradiance->z));
+    }
+    input.radiance[sun] = pipeline::sun_radiance(*irradiance);
   }
 
   void make_map() {

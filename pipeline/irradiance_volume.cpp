@@ -100,7 +100,10 @@ double solid_angle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
 
 IrradianceVolume::IrradianceVolume(const LitScene& scene, const PatchVisibility& visibility,
                                    const IrradianceVolumeOptions& options) {
-  for (const PatchVertex& vertex : scene.model.vertices) box_.add(glm::dvec3(vertex.position));
+  for (const Patch& patch : scene.model.patches) {
+    if (patch.distant) continue;
+    for (std::size_t k = 0; k < 3; ++k) box_.add(scene.model.corner(patch, k));
+  }
   const glm::dvec3 extent = box_.high - box_.low;
   std::size_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {

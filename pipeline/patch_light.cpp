@@ -84,38 +84,63 @@ double form_factor(const glm::dvec3& point, const glm::dvec3& normal,
 struct PatchVisibility::World {
   const PatchModel& model;
   RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
+  /// The patches of the scene itself, and those that distant patches do not shine through.
+  RTCScene scene = nullptr, opaque = nullptr;
 
   explicit World(const PatchModel& patches) : model(patches) {
     device = rtcNewDevice(nullptr);
     if (!device) throw std::runtime_error("Embree cannot start");
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* corners = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), model.vertices.size()));
-    auto* indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(std::uint32_t), model.patches.size()));
-    for (const PatchVertex& vertex : model.vertices) {
-      *corners++ = vertex.position.x;
-      *corners++ = vertex.position.y;
-      *corners++ = vertex.position.z;
+    const std::size_t near = model.near_count();
+    std::vector<std::uint32_t> all, unclear;
+    for (std::size_t i = 0; i < near; ++i) {
+      const Patch& patch = model.patches[i];
+      all.insert(all.end(), patch.vertices.begin(), patch.vertices.end());
+      if (std::ranges::find(model.clear_surfaces, patch.surface) == model.clear_surfaces.end())
+        unclear.insert(unclear.end(), patch.vertices.begin(), patch.vertices.end());
     }
-    for (const Patch& patch : model.patches)
-      indices = std::copy(patch.vertices.begin(), patch.vertices.end(), indices);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
+    scene = build(all);
+    if (near < model.patches.size()) opaque = build(unclear);
   }
   ~World() {
     rtcReleaseScene(scene);
+    if (opaque) rtcReleaseScene(opaque);
     rtcReleaseDevice(device);
   }
   World(const World&) = delete;
   World& operator=(const World&) = delete;
+
+  RTCScene build(const std::vector<std::uint32_t>& triangles) const {
+    RTCScene built = rtcNewScene(device);
+    rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
+    if (!triangles.empty()) {
+      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+      auto* corners = static_cast<float*>(
+          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                  3 * sizeof(float), model.vertices.size()));
+      auto* indices = static_cast<std::uint32_t*>(
+          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                  3 * sizeof(std::uint32_t), triangles.size() / 3));
+      for (const PatchVertex& vertex : model.vertices) {
+        *corners++ = vertex.position.x;
+        *corners++ = vertex.position.y;
+        *corners++ = vertex.position.z;
+      }
+      std::ranges::copy(triangles, indices);
+      rtcCommitGeometry(geometry);
+      rtcAttachGeometry(built, geometry);
+      rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(built);
+    return built;
+  }
+
+  bool is_free(RTCScene among, const glm::dvec3& from, const glm::dvec3& to) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray = make_ray(from, to - from, 1.0);
+    rtcOccluded1(among, &context, &ray);
+    return !(ray.tfar < 0.0f);
+  }
 };
 
 PatchVisibility::PatchVisibility(const PatchModel& model)
@@ -125,18 +150,18 @@ PatchVisibility::~PatchVisibility() = default;
 const PatchModel& PatchVisibility::model() const { return world_->model; }
 
 bool PatchVisibility::sees(const glm::dvec3& from, const glm::dvec3& to) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay ray = make_ray(from, to - from, 1.0);
-  rtcOccluded1(world_->scene, &context, &ray);
-  return !(ray.tfar < 0.0f);
+  return world_->is_free(world_->scene, from, to);
+}
+
+bool PatchVisibility::sees(const Patch& patch, const glm::dvec3& from, const glm::dvec3& to) const {
+  return world_->is_free(patch.distant ? world_->opaque : world_->scene, from, to);
 }
 
 double PatchVisibility::visible_share(const Patch& patch, const glm::dvec3& point,
                                       const glm::dvec3& normal, int samples) const {
   return share_of_samples(
       patch, point, normal, samples,
-      [this](const glm::dvec3& from, const glm::dvec3& to) { return sees(from, to); });
+      [&](const glm::dvec3& from, const glm::dvec3& to) { return sees(patch, from, to); });
 }
 
 PatchVisibility::Hit PatchVisibility::trace(const glm::dvec3& origin,

@@ -60,7 +60,10 @@ class PatchVisibility {
   }
   /// No patch lies between two points.
   bool sees(const glm::dvec3& from, const glm::dvec3& to) const;
-  /// The nearest patch along a ray, seen from either side; kNone where there is none.
+  /// The same where `to` is on this patch: a distant one is seen through clear surfaces.
+  bool sees(const Patch& patch, const glm::dvec3& from, const glm::dvec3& to) const;
+  /// The nearest patch of the scene itself along a ray, seen from either side; kNone where there is
+  /// none.
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   struct Hit {
     std::size_t patch = kNone;

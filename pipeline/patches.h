@@ -33,6 +33,8 @@ struct Patch {
   double area_m2 = 0.0;
   /// Index in PatchModel::surfaces.
   std::uint32_t surface = 0;
+  /// Far outside of the scene (the sun): it gives light, and neither takes nor hides any.
+  bool distant = false;
 };
 
 struct PatchModel {
@@ -42,7 +44,15 @@ struct PatchModel {
   std::vector<std::string> surfaces;
   /// No patch's edge is longer, in metres.
   double longest_edge_m = 0.0;
+  /// Indices of surfaces that light of distant patches goes through.
+  std::vector<std::uint32_t> clear_surfaces;
 
+  /// Patches of the scene itself, which come before distant ones.
+  std::size_t near_count() const {
+    std::size_t count = patches.size();
+    while (count > 0 && patches[count - 1].distant) --count;
+    return count;
+  }
   glm::dvec3 corner(const Patch& patch, std::size_t k) const {
     return glm::dvec3(vertices[patch.vertices[k]].position);
   }

@@ -17,14 +17,18 @@ std::vector<std::uint32_t> find_sources(const LitScene& scene, double power_shar
   std::vector<std::uint32_t> sources;
   for (std::uint32_t i = 0; i < patches.size(); ++i) {
     light[i] = luminance(scene.radiance[i]);
-    power += light[i] * patches[i].area_m2;
+    if (!patches[i].distant) power += light[i] * patches[i].area_m2;
     if (light[i] > 0.0) sources.push_back(i);
   }
   std::stable_sort(sources.begin(), sources.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return light[a] > light[b]; });
+  // Nothing in the scene comes near a sun's radiance; should it, the sun goes first all the same.
+  const auto first_near = std::stable_partition(
+      sources.begin(), sources.end(), [&](std::uint32_t i) { return patches[i].distant; });
   double sum = 0.0;
-  std::size_t count = 0;
-  while (count < sources.size() && (count == 0 || sum < power_share * power)) {
+  auto count = static_cast<std::size_t>(first_near - sources.begin());
+  const std::size_t distant = count;
+  while (count < sources.size() && (count == distant || sum < power_share * power)) {
     sum += light[sources[count]] * patches[sources[count]].area_m2;
     ++count;
   }

@@ -18,9 +18,9 @@ namespace gnomon::pipeline {
 /// The weight of a colour where one number is needed: Rec. 709 luminance.
 inline double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
-/// The brightest patches, sorted by falling luminance of radiance (then by number), that together
-/// give `power_share` of the power (radiance times area) of all; at least one where any patch has
-/// radiance, none otherwise. Misuse: a share not in [0, 1].
+/// The distant patches, and of the others the brightest, sorted by falling luminance of radiance
+/// (then by number), that together give `power_share` of their power (radiance times area); of
+/// these at least one where any has radiance, none otherwise. Misuse: a share not in [0, 1].
 std::vector<std::uint32_t> find_sources(const LitScene& scene, double power_share);
 
 /// One row a source, one column a vertex of the model: the radiance that the vertex reflects of the

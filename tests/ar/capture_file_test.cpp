@@ -97,6 +97,23 @@ TEST_F(CaptureToml, ReadsALatlongPicture) {
   EXPECT_EQ(probe.scale, glm::dvec3(1, 2, 3));
 }
 
+TEST_F(CaptureToml, ReadsASun) {
+  const std::string sun = "[sun]\ndirection = [0, 3, 4]\nirradiance = [2, 1, 0]\n";
+  const CaptureFile c = read(kHead + kPhotograph + kBall + sun + "through = [\"pane\"]\n" + kModel);
+  ASSERT_TRUE(c.sun);
+  EXPECT_EQ(c.sun->direction, glm::dvec3(0.0, 0.6, 0.8));
+  EXPECT_EQ(c.sun->irradiance, glm::dvec3(2.0, 1.0, 0.0));
+  EXPECT_EQ(c.sun->through, std::vector<std::string>{"pane"});
+  EXPECT_FALSE(read(kHead + kPhotograph + kBall + kModel).sun);
+  EXPECT_THAT(error_of(kHead + kPhotograph + kBall + "[sun]\n" + kModel),
+              HasSubstr("[sun].direction: missing"));
+  EXPECT_THAT(error_of(kHead + kPhotograph + kBall + "[sun]\ndirection = [0, 0, 0]\n" + kModel),
+              HasSubstr("[sun].direction: has no length"));
+  EXPECT_THAT(error_of(kHead + kPhotograph + kBall +
+                       "[sun]\ndirection = [0, 1, 0]\nirradiance = [-1, 0, 0]\n" + kModel),
+              HasSubstr("[sun].irradiance"));
+}
+
 TEST_F(CaptureToml, NamesFileLineAndKeyOfWhatIsWrong) {
   EXPECT_THAT(error_of(kHead + "photo = 1\n"), HasSubstr("capture.toml:3: photo: unknown key"));
   EXPECT_THAT(error_of(kHead + kPhotograph + "time = 1\n" + kBall + kModel),

@@ -12,6 +12,7 @@
 #include "../pipeline/patch_rooms.h"
 #include "ar/base64.h"
 #include "ar/error.h"
+#include "pipeline/sun.h"
 #include "temporary_folder.h"
 
 namespace gnomon::ar {
@@ -23,6 +24,7 @@ using ::testing::HasSubstr;
 pipeline::LitScene small_scene() {
   pipeline::LitScene scene;
   scene.model = pipeline::make_patches(cube_room(), 50);
+  pipeline::add_sun(scene.model, glm::normalize(glm::dvec3(1.0, 2.0, 0.5)), {2, 1});
   scene.model.surfaces[0] = "l\"eft\n\xc3\xa4";
   for (std::size_t i = 0; i < scene.model.patches.size(); ++i) {
     const float f = 0.1f * static_cast<float>(i);
@@ -77,7 +79,9 @@ TEST_F(LitSceneFile, ComesBackToTheBit) {
     EXPECT_EQ(a.normal, b.normal);
     EXPECT_EQ(a.area_m2, b.area_m2);
     EXPECT_EQ(a.surface, b.surface);
+    EXPECT_EQ(a.distant, b.distant);
   }
+  EXPECT_EQ(got.model.clear_surfaces, expected.model.clear_surfaces);
   EXPECT_EQ(got.radiance, expected.radiance);
   EXPECT_EQ(got.reflectance, expected.reflectance);
   EXPECT_EQ(got.tone.radiance_from_value, expected.tone.radiance_from_value);
@@ -88,8 +92,8 @@ TEST_F(LitSceneFile, ComesBackToTheBit) {
 
 TEST_F(LitSceneFile, RefusesAnotherFormatOrVersion) {
   json d = document();
-  d["version"] = 2;
-  EXPECT_THAT(error_of(d), HasSubstr("version: is not 1"));
+  d["version"] = 1;
+  EXPECT_THAT(error_of(d), HasSubstr("version: is not 2"));
   d["format"] = "another";
   EXPECT_THAT(error_of(d), HasSubstr("format: is not \"gnomon lit scene\""));
   EXPECT_THAT(error_of_text("[]"), HasSubstr("not a JSON object"));
@@ -111,7 +115,7 @@ TEST_F(LitSceneFile, RefusesEveryMissingOrMistypedMember) {
       json d = whole;
       d[part].erase(key);
       EXPECT_NE(error_of(d), "no error") << key;
-      for (const json& wrong : {json(-1), json(nullptr), json("?"), json::array({1})}) {
+      for (const json& wrong : {json(-1), json(nullptr), json("?"), json::array({-1})}) {
         d[part][key] = wrong;
         EXPECT_NE(error_of(d), "no error") << key << " = " << wrong;
       }

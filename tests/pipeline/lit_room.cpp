@@ -3,9 +3,11 @@
 #include <array>
 #include <numbers>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "pipeline/patch_light.h"
+#include "pipeline/sun.h"
 #include "tests/pipeline/patch_rooms.h"
 #include "tests/pipeline/test_meshes.h"
 
@@ -39,6 +41,13 @@ pipeline::LitScene lit_room(const RoomOptions& options) {
   pipeline::LitScene scene;
   scene.model = pipeline::make_patches(room_surfaces(options), options.patches);
   scene.tone = pipeline::ToneCurve::from_gamma(2.2, 3.0);
+  if (options.sun_irradiance > 0.0f) {
+    std::vector<std::uint32_t> clear;
+    for (std::uint32_t s = 0; s < scene.model.surfaces.size(); ++s)
+      if (scene.model.surfaces[s] == "ceiling" || scene.model.surfaces[s] == kPanel)
+        clear.push_back(s);
+    pipeline::add_sun(scene.model, glm::normalize(glm::dvec3(0.3, 1.0, 0.2)), clear);
+  }
   const std::size_t count = scene.model.patches.size();
   std::vector<glm::vec3> emitted(count, glm::vec3(0.0f));
   scene.reflectance.assign(count, glm::vec3(options.reflectance));
@@ -46,6 +55,10 @@ pipeline::LitScene lit_room(const RoomOptions& options) {
     if (scene.model.surfaces[scene.model.patches[i].surface] != kPanel) continue;
     emitted[i] = glm::vec3(1.0f, 0.9f, 0.8f) * options.panel_radiance;
     scene.reflectance[i] = glm::vec3(0.0f);
+  }
+  if (options.sun_irradiance > 0.0f) {
+    emitted.back() = glm::vec3(pipeline::sun_radiance(glm::dvec3(options.sun_irradiance)));
+    scene.reflectance.back() = glm::vec3(0.0f);
   }
   scene.radiance = emitted;
   const pipeline::PatchVisibility visibility(scene.model);

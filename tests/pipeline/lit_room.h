@@ -18,6 +18,9 @@ struct RoomOptions {
   float reflectance = 0.5f;
   /// Bounces of light; 0: only the panel has radiance.
   int bounces = 4;
+  /// Of a surface that faces the sun, which stands at (0.3, 1, 0.2) and shines through ceiling and
+  /// panel; 0: there is none.
+  float sun_irradiance = 0.0f;
 };
 
 /// 4 x 4 x 3 metres, the floor at y = 0, the panel's middle at (0.4, 2.9, -0.2), the table's top (a
