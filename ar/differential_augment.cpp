@@ -9,6 +9,7 @@
 #include "ar/stopwatch.h"
 #include "pipeline/pass_budget.h"
 #include "pipeline/ray_reference.h"
+#include "pipeline/reduced_occluder.h"
 #include "raster/execute.h"
 #include "raster/frame_format.h"
 
@@ -17,7 +18,7 @@ namespace gnomon::ar {
 namespace {
 
 std::vector<std::uint32_t> all_patches(const pipeline::LitScene& scene) {
-  std::vector<std::uint32_t> all(scene.model.patches.size());
+  std::vector<std::uint32_t> all(scene.model.near_count());
   std::iota(all.begin(), all.end(), 0u);
   return all;
 }
@@ -46,7 +47,7 @@ std::vector<std::uint32_t> visible_patches(const pipeline::LitScene& scene,
     }
   }
   std::vector<std::uint32_t> patches;
-  for (std::uint32_t i = 0; i < scene.model.patches.size(); ++i) {
+  for (std::uint32_t i = 0; i < scene.model.near_count(); ++i) {
     const auto& corners = scene.model.patches[i].vertices;
     if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return vertices[v]; }))
       patches.push_back(i);
@@ -65,6 +66,7 @@ struct DifferentialAugmenter::Impl {
   raster::DepthBuffer depth;
   raster::StencilBuffer stencil;
   raster::ExecuteMemory memory;
+  pipeline::ReducedOccluders occluders;
   DifferentialReport report;
 
   Impl(const Lens& lens, std::shared_ptr<const pipeline::LitScene> lit,
@@ -75,7 +77,8 @@ struct DifferentialAugmenter::Impl {
         color(view.width(), view.height(),
               is_wide() ? raster::ColorFormat::rgba32f : raster::ColorFormat::rgba8),
         depth(view.width(), view.height()),
-        stencil(view.width(), view.height()) {
+        stencil(view.width(), view.height()),
+        occluders(settings.occluder_triangles) {
     settings.light.transfer.threads = settings.threads;
     settings.method.take.threads = settings.threads;
     const std::vector<std::uint32_t> receivers =
@@ -111,25 +114,16 @@ struct DifferentialAugmenter::Impl {
     raster::execute(frame, {.threads = settings.threads, .memory = &memory, .first_command = done});
   }
 
-  /// The drawn picture in 8 bits.
-  raster::ColorBuffer picture(const raster::ImageView& photograph) const {
-    const std::vector<std::uint8_t> rows =
-        settings.method.take.precision == pipeline::ShadowPrecision::radiance
-            ? pipeline::map_radiance(photograph, color, scene->tone, settings.threads)
-            : color.to_rgba8_rows();
-    raster::ColorBuffer out(view.width(), view.height());
-    auto at = rows.begin();
-    for (int y = 0; y < view.height(); ++y) {
-      for (int x = 0; x < view.width(); ++x, at += 4)
-        out.rgba8().at(x, y) = {at[0], at[1], at[2], at[3]};
-    }
-    return out;
+  /// The drawn picture in 8 bits, as ColorBuffer::to_rgba8_rows.
+  std::vector<std::uint8_t> picture(const raster::ImageView& photograph) const {
+    return settings.method.take.precision == pipeline::ShadowPrecision::radiance
+               ? pipeline::map_radiance(photograph, color, scene->tone, settings.threads)
+               : color.to_rgba8_rows();
   }
 
   /// r: a shadow fell there; b: a virtual object is visible; as rows from the bottom.
   std::vector<std::uint8_t> masks(const raster::ImageView& photograph,
-                                  const raster::ColorBuffer& drawn) const {
-    std::vector<std::uint8_t> rows = drawn.to_rgba8_rows();
+                                  std::vector<std::uint8_t> rows) const {
     for (int y = 0; y < view.height(); ++y) {
       for (int x = 0; x < view.width(); ++x) {
         std::uint8_t* at = &rows[4 * (static_cast<std::size_t>(y) * view.width() + x)];
@@ -170,7 +164,8 @@ Augmented DifferentialAugmenter::augment(const Image& photograph, const pipeline
                                                        resampled.height, 3);
   pipeline::DifferentialOptions options = at.settings.method;
   if (at.budget) options.take.passes = at.budget->passes();
-  const pipeline::Scene scene = virtual_ones(objects);
+  pipeline::Scene scene = virtual_ones(objects);
+  at.occluders.apply(scene);
   const raster::Frame frame =
       at.method->record(scene, camera, picture, {&at.color, &at.depth, &at.stencil}, options);
   if (at.settings.frame) out.frame = raster::encode_frame(frame);
@@ -179,18 +174,19 @@ Augmented DifferentialAugmenter::augment(const Image& photograph, const pipeline
   at.execute(frame, out);
   out.execute_ms = watch.lap_ms();
 
-  const raster::ColorBuffer drawn = at.picture(picture);
-  out.composite = composite(at.view, photograph, resampled, drawn);
+  std::vector<std::uint8_t> drawn = at.picture(picture);
+  const int threads = at.settings.threads;
+  out.composite = composite(at.view, photograph, resampled, drawn, threads);
   if (at.settings.masks) {
-    const std::vector<std::uint8_t> rows = at.masks(picture, drawn);
-    out.shadow_mask = mask_at_photo(at.view, rows, 0);
-    out.shadow_on_virtual = mask_at_photo(at.view, rows, 1);
-    out.object_mask = mask_at_photo(at.view, rows, 2);
+    const std::vector<std::uint8_t> rows = at.masks(picture, std::move(drawn));
+    out.shadow_mask = mask_at_photo(at.view, rows, 0, threads);
+    out.shadow_on_virtual = mask_at_photo(at.view, rows, 1, threads);
+    out.object_mask = mask_at_photo(at.view, rows, 2, threads);
   }
   out.composite_ms = watch.lap_ms();
   const pipeline::DifferentialShadows& shadows = at.method->shadows();
   at.report = {shadows.occluded_sources, shadows.receivers, shadows.shadows.size(),
-               shadows.left_out};
+               shadows.left_out, at.method->traverse_ms()};
   if (at.budget) at.budget->add(shadows.shadows.size(), whole.lap_ms());
   return out;
 }

@@ -24,6 +24,8 @@ struct DifferentialSettings {
   pipeline::LightPathOptions light;
   /// Milliseconds a frame may take from photograph to composite; 0: method.take.passes always.
   double budget_ms = 0.0;
+  /// Triangles that an object casts with, at most, if it has no shadow model of its own; 0: all.
+  std::size_t occluder_triangles = 500;
   /// As AugmentOptions; samples 0 is 1 here, since each pixel is looked up once a source.
   int samples = 0, threads = 0;
   double near_m = 0.02, far_m = 100.0;
@@ -34,6 +36,8 @@ struct DifferentialSettings {
 /// were made, and sources that none could be made for (pipeline::DifferentialShadows).
 struct DifferentialReport {
   std::size_t occluded_sources = 0, receivers = 0, shadows = 0, left_out = 0;
+  /// Of record_ms, what finding those sources and patches took.
+  double traverse_ms = 0.0;
 };
 
 class DifferentialAugmenter {

@@ -28,10 +28,10 @@ pipeline::ShadowMask read_mask(const TomlTable& t) {
 }  // namespace
 
 DifferentialFile read_differential(const std::filesystem::path& file, const toml::table& table) {
-  const TomlTable t(
-      file, table, "[differential]",
-      {"lit_scene", "passes", "budget_ms", "precision", "mask", "map_size", "self_shadows",
-       "power_share", "prune_share", "drop_pruned", "whole_clusters"});
+  const TomlTable t(file, table, "[differential]",
+                    {"lit_scene", "passes", "budget_ms", "precision", "mask", "map_size",
+                     "self_shadows", "occluder_triangles", "power_share", "prune_share",
+                     "drop_pruned", "whole_clusters", "returned_light"});
   DifferentialFile out;
   // Absent, the command line names it.
   out.lit_scene = t.file("lit_scene").value_or("");
@@ -44,11 +44,14 @@ DifferentialFile read_differential(const std::filesystem::path& file, const toml
   settings.budget_ms = t.number("budget_ms", 0.1, 60'000.0).value_or(0.0);
   take.precision = read_precision(t);
   take.whole_clusters = t.boolean("whole_clusters").value_or(take.whole_clusters);
+  take.returned_light = t.boolean("returned_light").value_or(take.returned_light);
   settings.method.mask = read_mask(t);
   if (t.has("map_size") && settings.method.mask != pipeline::ShadowMask::map)
     t.fail("map_size", "is a shadow map's: give mask = \"map\"");
   settings.method.map_size = t.integer("map_size", 8, 4096).value_or(settings.method.map_size);
   settings.method.self_shadows = t.boolean("self_shadows").value_or(settings.method.self_shadows);
+  if (const auto triangles = t.integer("occluder_triangles", 0, 100'000'000))
+    settings.occluder_triangles = static_cast<std::size_t>(*triangles);
   pipeline::LightPathOptions& light = settings.light;
   light.transfer.power_share =
       t.number("power_share", 0.0, 1.0).value_or(light.transfer.power_share);

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "pipeline/casters.h"
-#include "pipeline/intensity_transfer.h"
 #include "pipeline/near_clip.h"
 #include "raster/check.h"
 #include "raster/executor.h"
@@ -18,10 +17,8 @@
 namespace gnomon::pipeline {
 namespace {
 
-/// Of what casts. One that is moved away from a light hides nothing that it did not hide before.
-std::array<glm::dvec3, 8> corners_of(const PlacedObject& object) {
-  const Topology& topology = *object.caster_topology;
-  const glm::dmat4 world(object.object->world_from_model);
+std::array<glm::dvec3, 8> corners_of(const Topology& topology, const Object& object) {
+  const glm::dmat4 world(object.world_from_model);
   std::array<glm::dvec3, 8> corners;
   for (std::size_t i = 0; i < 8; ++i) {
     const glm::dvec3 p(i & 1 ? topology.high.x : topology.low.x,
@@ -30,6 +27,18 @@ std::array<glm::dvec3, 8> corners_of(const PlacedObject& object) {
     corners[i] = glm::dvec3(world * glm::dvec4(p, 1.0));
   }
   return corners;
+}
+
+/// Of its parts, each as much as it has triangles.
+glm::dvec3 mean_reflectance(const Model& model) {
+  glm::dvec3 sum(0.0);
+  double triangles = 0.0;
+  for (const Part& part : model.parts) {
+    const auto count = static_cast<double>(part.mesh.triangle_count());
+    sum += glm::dvec3(linear_color(part.material.diffuse)) * count;
+    triangles += count;
+  }
+  return triangles > 0.0 ? sum / triangles : sum;
 }
 
 raster::State drawn_again() {
@@ -42,25 +51,39 @@ raster::State drawn_again() {
   return state;
 }
 
-/// The part of the target that triangles can cover.
-raster::Rect window_of(std::span<const glm::vec4> positions, std::span<const std::uint32_t> indices,
-                       const Camera& camera) {
-  const raster::Rect all{0, 0, camera.width, camera.height};
-  glm::dvec2 low(2.0), high(-2.0);
-  for (const std::uint32_t i : indices) {
-    const glm::dvec4 clip = glm::dmat4(camera.clip_from_world) * glm::dvec4(positions[i]);
-    if (!(clip.w > 1e-3)) return all;
-    low = glm::min(low, glm::dvec2(clip) / clip.w);
-    high = glm::max(high, glm::dvec2(clip) / clip.w);
+/// The part of the target that points can cover, with all triangles between them.
+class Window {
+ public:
+  explicit Window(const Camera& camera) : camera_(camera), clip_(camera.clip_from_world) {}
+
+  void add(const glm::dvec3& world) {
+    const glm::dvec4 clip = clip_ * glm::dvec4(world, 1.0);
+    if (!(clip.w > kLeastW)) {
+      all_ = true;
+      return;
+    }
+    low_ = glm::min(low_, glm::dvec2(clip) / clip.w);
+    high_ = glm::max(high_, glm::dvec2(clip) / clip.w);
   }
-  const auto pixel = [](double ndc, int size, double pad) {
-    return static_cast<int>(
-        std::clamp((ndc + 1.0) * 0.5 * size + pad, 0.0, static_cast<double>(size)));
-  };
-  const int x0 = pixel(low.x, camera.width, -1.0), x1 = pixel(high.x, camera.width, 2.0);
-  const int y0 = pixel(low.y, camera.height, -1.0), y1 = pixel(high.y, camera.height, 2.0);
-  return {x0, y0, std::max(x1 - x0, 0), std::max(y1 - y0, 0)};
-}
+
+  raster::Rect rect() const {
+    if (all_) return {0, 0, camera_.width, camera_.height};
+    const auto pixel = [](double ndc, int size, double pad) {
+      return static_cast<int>(
+          std::clamp((ndc + 1.0) * 0.5 * size + pad, 0.0, static_cast<double>(size)));
+    };
+    const int x0 = pixel(low_.x, camera_.width, -1.0), x1 = pixel(high_.x, camera_.width, 2.0);
+    const int y0 = pixel(low_.y, camera_.height, -1.0), y1 = pixel(high_.y, camera_.height, 2.0);
+    return {x0, y0, std::max(x1 - x0, 0), std::max(y1 - y0, 0)};
+  }
+
+ private:
+  static constexpr double kLeastW = 1e-3;
+  const Camera& camera_;
+  glm::dmat4 clip_;
+  glm::dvec2 low_{2.0}, high_{-2.0};
+  bool all_ = false;
+};
 
 std::string numbered(const char* label, std::size_t number) {
   return label + std::to_string(number);
@@ -73,7 +96,8 @@ DifferentialMethod::DifferentialMethod(const LitScene& scene, const LightPaths& 
   for (const PatchVertex& vertex : scene.model.vertices)
     model_positions_.emplace_back(vertex.position, 1.0f);
   for (const Patch& patch : scene.model.patches)
-    model_indices_.insert(model_indices_.end(), patch.vertices.begin(), patch.vertices.end());
+    if (!patch.distant)
+      model_indices_.insert(model_indices_.end(), patch.vertices.begin(), patch.vertices.end());
 }
 
 raster::Frame DifferentialMethod::record(const Scene& virtual_scene, const Camera& camera,
@@ -88,22 +112,29 @@ raster::Frame DifferentialMethod::record(const Scene& virtual_scene, const Camer
   raster::require(bytes == (targets.color->format() == raster::ColorFormat::rgba8),
                   "bytes go to RGBA8, values and radiance to RGBA32F");
   placed_ = place_objects(virtual_scene, camera, topologies_);
-  std::vector<glm::dvec3> corners;
+  std::vector<ShadowCaster> casters;
   std::vector<Bounds> boxes;
   for (const PlacedObject& object : placed_) {
     if (!object.object->casts || object.caster_topology->triangle_count() == 0) continue;
+    // One that is moved away from a light hides nothing that it did not hide before.
+    casters.push_back({corners_of(*object.caster_topology, *object.object),
+                       mean_reflectance(*object.object->model)});
     Bounds& box = boxes.emplace_back();
-    for (const glm::dvec3& p : corners_of(object)) {
-      corners.push_back(p);
-      box.add(p);
-    }
+    for (const glm::dvec3& p : casters.back().corners) box.add(p);
   }
+  const auto start = std::chrono::steady_clock::now();
   occluded_.find(paths_, boxes);
-  find_shadows(scene_, paths_, occluded_, corners, options.take, shadows_);
+  traverse_ms_ =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  find_shadows(scene_, paths_, occluded_, casters, object_light_.volume(), options.take, shadows_);
   const ObjectRadiance radiance =
       object_light_.radiance(placed_, camera.eye_world, options.take.threads);
   color_objects(radiance, options);
-  take_from_objects(radiance, options);
+  if (options.self_shadows)
+    take_from_objects(scene_, visibility_, placed_, radiance, shadows_.shadows, camera.eye_world,
+                      options.take, taken_);
+  else
+    taken_.clear();
 
   raster::Frame frame;
   record_surfaces(frame, camera, photograph, targets, options);
@@ -168,9 +199,13 @@ void DifferentialMethod::count(raster::Frame& frame, std::size_t number, const C
                                const raster::Targets& targets, const DifferentialOptions& options) {
   const SourceShadow& shadow = shadows_.shadows[number];
   frame.begin_pass(numbered(differential_label::kVolumes, number), targets);
-  const raster::Rect window = options.self_shadows
-                                  ? raster::Rect{0, 0, camera.width, camera.height}
-                                  : window_of(shadows_.positions, shadow.indices, camera);
+  Window seen(camera);
+  for (const std::uint32_t i : shadow.indices) seen.add(glm::dvec3(shadows_.positions[i]));
+  for (const PlacedObject& object : placed_) {
+    if (!options.self_shadows || !object.object->receives) continue;
+    for (const glm::dvec3& corner : corners_of(*object.topology, *object.object)) seen.add(corner);
+  }
+  const raster::Rect window = seen.rect();
   if (window.width == 0 || window.height == 0) return;
   frame.clear({.stencil = 0, .scissor = window});
   const Light light{.position = shadow.light};
@@ -197,15 +232,16 @@ void DifferentialMethod::subtract(raster::Frame& frame, std::size_t number, cons
                 .shading = raster::Flat{.depth_lookup = map},
                 .label = "receivers"});
   }
+  auto take = taken_.empty() ? std::vector<MeshTake>::const_iterator() : taken_[number].begin();
   for (std::size_t i = 0; i < placed_.size() && !taken_.empty(); ++i) {
-    if (!placed_[i].object->receives) continue;
     std::optional<raster::DepthLookup> lookup = map;
     if (lookup) lookup->map_from_position *= placed_[i].object->world_from_model;
     state.front_face = placed_[i].front_face;
-    for (std::size_t p = 0; p < placed_[i].meshes.size(); ++p) {
-      const Mesh& mesh = *placed_[i].meshes[p];
+    for (const auto& mesh : placed_[i].meshes) {
+      const MeshTake& from = *take++;
+      if (from.indices.empty()) continue;
       frame.draw({.state = state,
-                  .mesh = {mesh.positions, mesh.indices, {}, taken_[number][i][p], {}},
+                  .mesh = {mesh->positions, from.indices, {}, from.colors, {}},
                   .clip_from_model = placed_[i].clip_from_model,
                   .shading = raster::Flat{.depth_lookup = lookup},
                   .label = placed_[i].object->name});
@@ -228,78 +264,6 @@ void DifferentialMethod::color_objects(const ObjectRadiance& radiance,
                     ? glm::vec4(light, 1.0f)
                     : glm::vec4(glm::vec3(scene_.tone.value(glm::dvec3(light)) / 255.0), 1.0f);
       }
-    }
-  }
-}
-
-/// A cluster counts as a point here, as if all its light came from there: near enough for a vertex
-/// that is far from it, and a thousand times less work than all its patches.
-void DifferentialMethod::take_from_objects(const ObjectRadiance& radiance,
-                                           const DifferentialOptions& options) {
-  if (!options.self_shadows) {
-    taken_.clear();
-    return;
-  }
-  const std::size_t count = shadows_.shadows.size();
-  std::vector<std::uint8_t> first_set(count);
-  for (std::size_t j = 0; j < count; ++j)
-    first_set[j] = in_first_set(shadows_.shadows[j].cluster.brightest, options.take.first_share);
-  taken_.resize(count);
-  for (ObjectColors& colors : taken_) {
-    colors.resize(drawn_.size());
-    for (std::size_t i = 0; i < drawn_.size(); ++i) {
-      colors[i].resize(drawn_[i].size());
-      for (std::size_t p = 0; p < drawn_[i].size(); ++p) colors[i][p].resize(drawn_[i][p].size());
-    }
-  }
-  for (std::size_t i = 0; i < placed_.size(); ++i) {
-    const Object& object = *placed_[i].object;
-    std::vector<float> seen(count);
-    const glm::dvec3 middle = glm::dvec3(
-        object.world_from_model *
-        glm::vec4(glm::vec3((placed_[i].topology->low + placed_[i].topology->high) * 0.5), 1.0f));
-    for (std::size_t j = 0; j < count; ++j) {
-      const Patch& patch =
-          scene_.model.patches[paths_.transfers.sources[shadows_.shadows[j].cluster.brightest]];
-      seen[j] = static_cast<float>(
-          visibility_.visible_share(patch, middle, glm::normalize(patch.center - middle), 4));
-    }
-    std::size_t first_vertex = 0;
-    for (std::size_t p = 0; p < placed_[i].meshes.size(); ++p) {
-      const Mesh& mesh = *placed_[i].meshes[p];
-      const glm::dvec3 diffuse(linear_color(object.model->parts[p].material.diffuse));
-      raster::for_each_chunk(
-          mesh.positions.size(), 64, options.take.threads,
-          [&](std::size_t first, std::size_t last) {
-            std::vector<glm::vec3> transfers(count), values(count);
-            for (std::size_t v = first; v < last; ++v) {
-              const glm::dvec3 at(object.world_from_model * mesh.positions[v]);
-              const glm::dvec3 normal =
-                  glm::normalize(glm::dvec3(placed_[i].world_from_model_normal * mesh.normals[v]));
-              for (std::size_t j = 0; j < count; ++j) {
-                const SourceShadow& shadow = shadows_.shadows[j];
-                const Patch& patch =
-                    scene_.model.patches[paths_.transfers.sources[shadow.cluster.brightest]];
-                const glm::dvec3 to = patch.center - at;
-                const double square = glm::dot(to, to);
-                const double cosines = std::max(0.0, glm::dot(to, normal)) *
-                                       std::max(0.0, -glm::dot(to, patch.normal));
-                const double factor = cosines / (square * square * std::numbers::pi);
-                transfers[j] = glm::vec3(diffuse * glm::dvec3(shadow.intensity) *
-                                         (factor * static_cast<double>(seen[j])));
-              }
-              if (options.take.precision == ShadowPrecision::radiance) {
-                values = transfers;
-              } else {
-                intensity_transfers(scene_.tone, glm::dvec3(radiance[i][first_vertex + v]),
-                                    transfers, first_set, values);
-                for (glm::vec3& value : values) value /= 255.0f;
-              }
-              for (std::size_t j = 0; j < count; ++j)
-                taken_[j][i][p][v] = glm::vec4(values[j], 0.0f);
-            }
-          });
-      first_vertex += mesh.positions.size();
     }
   }
 }

@@ -17,6 +17,7 @@
 #include "pipeline/light_paths.h"
 #include "pipeline/lit_scene.h"
 #include "pipeline/object_light.h"
+#include "pipeline/object_takes.h"
 #include "pipeline/patch_light.h"
 #include "pipeline/scene.h"
 #include "pipeline/shadow_map.h"
@@ -69,6 +70,8 @@ class DifferentialMethod {
 
   /// Of the last frame.
   const DifferentialShadows& shadows() const { return shadows_; }
+  /// Of the last frame, what finding sources and receivers took (section 6.1), in milliseconds.
+  double traverse_ms() const { return traverse_ms_; }
 
  private:
   /// One an object, part and vertex.
@@ -84,7 +87,6 @@ class DifferentialMethod {
   void subtract(raster::Frame& frame, std::size_t number, const Camera& camera,
                 const raster::Targets& targets, const std::optional<raster::DepthLookup>& map);
   void color_objects(const ObjectRadiance& radiance, const DifferentialOptions& options);
-  void take_from_objects(const ObjectRadiance& radiance, const DifferentialOptions& options);
 
   const LitScene& scene_;
   const LightPaths& paths_;
@@ -93,14 +95,15 @@ class DifferentialMethod {
   std::vector<glm::vec4> model_positions_;
   std::vector<std::uint32_t> model_indices_;
   OccludedLight occluded_;
+  double traverse_ms_ = 0.0;
   DifferentialShadows shadows_;
   TopologyCache topologies_;
   MapMemory maps_;
   VolumeMemory volumes_;
   std::vector<PlacedObject> placed_;
   ObjectColors drawn_;
-  /// One a shadow.
-  std::vector<ObjectColors> taken_;
+  /// Empty without self-shadows.
+  ObjectTakes taken_;
 };
 
 /// The picture of ShadowPrecision::radiance: T of an object's radiance, T of the photograph's

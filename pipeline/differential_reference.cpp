@@ -17,6 +17,9 @@
 namespace gnomon::pipeline {
 namespace {
 
+/// Points of a patch that are asked for at an object's triangle: its light is one of a thousand.
+constexpr int kGlowSamples = 1;
+
 struct Sphere {
   glm::dvec3 center{0.0};
   double radius = 0.0;
@@ -57,12 +60,14 @@ struct DifferentialReference::World {
   std::vector<Sphere> patch_spheres, casters;
   /// One an object: its first part's.
   std::vector<glm::dvec3> diffuse;
+  Scene virtual_scene;
 
-  World(const LitScene& lit, const Scene& virtual_scene)
+  World(const LitScene& lit, const Scene& virtual_objects)
       : scene(lit),
         patches(lit.model),
-        objects(virtual_scene),
-        reflectance(at_vertices(lit.model, lit.reflectance)) {
+        objects(virtual_objects),
+        reflectance(at_vertices(lit.model, lit.reflectance)),
+        virtual_scene(virtual_objects) {
     for (const Patch& patch : lit.model.patches) {
       Sphere sphere{patch.center, 0.0};
       for (std::size_t k = 0; k < 3; ++k)
@@ -76,8 +81,10 @@ struct DifferentialReference::World {
     }
   }
 
-  /// What virtual objects take from a receiver's point, as irradiance over pi.
-  glm::dvec3 hidden(const glm::dvec3& point, const glm::dvec3& normal, int samples) const {
+  /// What virtual objects take from a receiver's point, as irradiance over pi. `glow` is what they
+  /// give back, the radiance of each triangle of each object; empty: nothing.
+  glm::dvec3 hidden(const glm::dvec3& point, const glm::dvec3& normal, int samples,
+                    const std::vector<std::vector<glm::vec3>>& glow) const {
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < patch_spheres.size(); ++i) {
       if (scene.radiance[i] == glm::vec3(0.0f)) continue;
@@ -88,19 +95,55 @@ struct DifferentialReference::World {
       const Patch& patch = scene.model.patches[i];
       const double factor = form_factor(point, normal, scene.model.corners(patch));
       if (factor <= 0.0) continue;
-      const double share = hidden_share(patch, point, normal, samples);
-      sum += glm::dvec3(scene.radiance[i]) * (factor * share);
+      glm::dvec3 returned(0.0);
+      int hidden = 0;
+      // The share of the patch's points that only virtual objects hide.
+      const double share = patches.share_of_samples(
+          patch, point, normal, samples, [&](const glm::dvec3& from, const glm::dvec3& to) {
+            if (!objects.blocked(from, glm::vec4(glm::vec3(to), 1.0f)) ||
+                !patches.sees(patch, from, to))
+              return false;
+            ++hidden;
+            const RayHit hit = glow.empty() ? RayHit{} : objects.trace({from, to - from});
+            if (hit.hit && hit.distance < 1.0)
+              returned += glm::dvec3(glow[hit.object][hit.triangle]);
+            return true;
+          });
+      if (hidden > 0)
+        sum += (glm::dvec3(scene.radiance[i]) - returned / static_cast<double>(hidden)) *
+               (factor * share);
     }
     return sum;
   }
 
-  /// The share of the patch's points that only virtual objects hide.
-  double hidden_share(const Patch& patch, const glm::dvec3& point, const glm::dvec3& normal,
-                      int samples) const {
-    return patches.share_of_samples(
-        patch, point, normal, samples, [&](const glm::dvec3& from, const glm::dvec3& to) {
-          return objects.blocked(from, glm::vec4(glm::vec3(to), 1.0f)) && patches.sees(from, to);
-        });
+  /// The radiance of each triangle of each object at its middle.
+  std::vector<std::vector<glm::vec3>> glow(int threads) const {
+    std::vector<std::vector<glm::vec3>> all;
+    for (std::size_t o = 0; o < virtual_scene.objects.size(); ++o) {
+      const Object& object = virtual_scene.objects[o];
+      std::vector<std::array<glm::dvec3, 3>> triangles;
+      for (const Part& part : object.model->parts) {
+        for (std::size_t t = 0; t + 2 < part.mesh.indices.size(); t += 3) {
+          auto& corners = triangles.emplace_back();
+          for (std::size_t k = 0; k < 3; ++k)
+            corners[k] =
+                glm::dvec3(object.world_from_model * part.mesh.positions[part.mesh.indices[t + k]]);
+        }
+      }
+      std::vector<glm::vec3>& light = all.emplace_back(triangles.size(), glm::vec3(0.0f));
+      raster::for_each_chunk(
+          triangles.size(), 16, threads, [&](std::size_t first, std::size_t last) {
+            for (std::size_t t = first; t < last; ++t) {
+              const auto& [a, b, c] = triangles[t];
+              const glm::dvec3 across = glm::cross(b - a, c - a);
+              const double length = glm::length(across);
+              if (!(length > 0.0)) continue;
+              light[t] = glm::vec3(diffuse[o] *
+                                   arriving((a + b + c) / 3.0, across / length, kGlowSamples));
+            }
+          });
+    }
+    return all;
   }
 
   /// Irradiance over pi on a virtual object, of all that nothing hides.
@@ -113,7 +156,8 @@ struct DifferentialReference::World {
       if (factor <= 0.0) continue;
       const double share = patches.share_of_samples(
           patch, point, normal, samples, [&](const glm::dvec3& from, const glm::dvec3& to) {
-            return !objects.blocked(from, glm::vec4(glm::vec3(to), 1.0f)) && patches.sees(from, to);
+            return !objects.blocked(from, glm::vec4(glm::vec3(to), 1.0f)) &&
+                   patches.sees(patch, from, to);
           });
       sum += glm::dvec3(scene.radiance[i]) * (factor * share);
     }
@@ -133,6 +177,8 @@ ReferencePicture DifferentialReference::render(std::span<const Ray> rays,
   picture.object.resize(rays.size());
   picture.shadow.resize(rays.size());
   const World& world = *world_;
+  std::vector<std::vector<glm::vec3>> glow;
+  if (options.returned_light) glow = world.glow(options.threads);
   const ToneCurve& tone = world.scene.tone;
   const auto set = [&](std::size_t i, const glm::dvec3& radiance) {
     for (std::size_t c = 0; c < 3; ++c)
@@ -158,7 +204,7 @@ ReferencePicture DifferentialReference::render(std::span<const Ray> rays,
       point += world.scene.model.corner(patch, k) * weight;
       reflectance += glm::dvec3(world.reflectance[patch.vertices[k]]) * weight;
     }
-    const glm::dvec3 taken = reflectance * world.hidden(point, patch.normal, options.samples);
+    const glm::dvec3 taken = reflectance * world.hidden(point, patch.normal, options.samples, glow);
     if (taken == glm::dvec3(0.0)) return;
     picture.shadow[i] = 1;
     glm::dvec3 light(0.0);

@@ -1,7 +1,7 @@
 // What the differential method approximates, by rays (Debevec 1998): for each pixel the light of
-// all patches that virtual objects hide from the visible point, subtracted from the photograph's
-// radiance in floats, then mapped to values. Uses the same lit scene, and nothing of sources,
-// shafts, maps or vertices.
+// all patches that virtual objects hide from the visible point, less what the objects send from
+// there, subtracted from the photograph's radiance in floats, then mapped to values. Uses the same
+// lit scene, and nothing of sources, shafts, maps or vertices.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +22,9 @@ namespace gnomon::pipeline {
 struct ReferenceOptions {
   /// Points of a patch that are asked for, at receivers and on virtual objects: 1, 4 or 16.
   int samples = 16, object_samples = 4;
+  /// Where an object hides a patch, the light that its own surface sends the same way is given
+  /// back; without it the room sees black objects.
+  bool returned_light = true;
   int threads = 0;
 };
 
@@ -32,7 +35,7 @@ struct ReferencePicture {
   std::vector<std::uint8_t> object, shadow;
 };
 
-/// Refers to the lit scene; copies the virtual scene's triangles.
+/// Refers to the lit scene; copies the virtual scene.
 class DifferentialReference {
  public:
   /// Errors: std::runtime_error when Embree cannot start.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -21,21 +22,43 @@ struct Cast {
   double near_m, far_m;
 };
 
+glm::dvec3 middle_of(const ShadowCaster& caster) {
+  glm::dvec3 sum(0.0);
+  for (const glm::dvec3& p : caster.corners) sum += p;
+  return sum / 8.0;
+}
+
+/// The radiance of the casters' sides that are turned away from a point, a mean over the casters.
+glm::dvec3 averted_light(const glm::dvec3& point, std::span<const ShadowCaster> casters,
+                         const IrradianceVolume& light) {
+  glm::dvec3 sum(0.0);
+  for (const ShadowCaster& caster : casters) {
+    const glm::dvec3 middle = middle_of(caster);
+    const double distance = glm::length(middle - point);
+    if (!(distance > 0.0)) continue;
+    sum += caster.reflectance * light.irradiance(middle, (middle - point) / distance);
+  }
+  return sum / (std::numbers::pi * static_cast<double>(casters.size()));
+}
+
 /// The view from a patch to the casters; absent if one map cannot have it.
-std::optional<Cast> cast_from(const glm::dvec3& light, std::span<const glm::dvec3> corners) {
+std::optional<Cast> cast_from(const glm::dvec3& light, std::span<const ShadowCaster> casters) {
   glm::dvec3 middle(0.0);
-  for (const glm::dvec3& p : corners) middle += p / static_cast<double>(corners.size());
+  for (const ShadowCaster& caster : casters)
+    middle += middle_of(caster) / static_cast<double>(casters.size());
   const Light point{.position = glm::vec4(glm::vec3(light), 1.0f)};
   if (!(glm::length(middle - light) > 0.0)) return std::nullopt;
   Cast cast{LightView::towards(point, middle), {}, 0.0, 0.0};
-  for (const glm::dvec3& p : corners) {
-    const glm::dvec3 local = cast.view.local(p);
-    if (!(local.z > 0.0)) return std::nullopt;
-    const glm::dvec2 place = cast.view.place(local);
-    if (std::max(std::abs(place.x), std::abs(place.y)) > kWidestMap) return std::nullopt;
-    cast.casters.add(place);
-    cast.near_m = cast.near_m == 0.0 ? local.z : std::min(cast.near_m, local.z);
-    cast.far_m = std::max(cast.far_m, local.z);
+  for (const ShadowCaster& caster : casters) {
+    for (const glm::dvec3& p : caster.corners) {
+      const glm::dvec3 local = cast.view.local(p);
+      if (!(local.z > 0.0)) return std::nullopt;
+      const glm::dvec2 place = cast.view.place(local);
+      if (std::max(std::abs(place.x), std::abs(place.y)) > kWidestMap) return std::nullopt;
+      cast.casters.add(place);
+      cast.near_m = cast.near_m == 0.0 ? local.z : std::min(cast.near_m, local.z);
+      cast.far_m = std::max(cast.far_m, local.z);
+    }
   }
   const glm::dvec2 margin = cast.casters.extent() * kMargin;
   cast.casters.low -= margin;
@@ -93,21 +116,29 @@ Receivers number_receivers(const PatchModel& model, std::span<const std::uint32_
 class Takes {
  public:
   Takes(const LitScene& scene, const LightPaths& paths, const Receivers& receivers,
-        const OccludedLight& occluded, const ShadowTakeOptions& options,
+        const OccludedLight& occluded, std::span<const ShadowCaster> casters,
+        const IrradianceVolume& light, const ShadowTakeOptions& options,
         std::vector<SourceShadow>& shadows)
       : scene_(scene), paths_(paths), receivers_(receivers), options_(options), shadows_(shadows) {
+    std::vector<std::uint32_t> rows;
     for (SourceShadow& shadow : shadows) {
-      std::vector<std::uint32_t>& rows = rows_.emplace_back();
+      rows.clear();
       if (options.whole_clusters) {
         const auto items = paths.sources.items(paths.sources.nodes[shadow.cluster.node]);
         rows.assign(items.begin(), items.end());
       } else {
         take_rows(paths, occluded, shadow.cluster.node, rows);
       }
+      const glm::dvec3 returned = options.returned_light
+                                      ? averted_light(glm::dvec3(shadow.light), casters, light)
+                                      : glm::dvec3(0.0);
+      std::vector<Given>& given = given_.emplace_back();
       glm::dvec3 intensity(0.0);
       for (const std::uint32_t row : rows) {
         const std::uint32_t patch = paths.transfers.sources[row];
-        intensity += glm::dvec3(scene.radiance[patch]) * scene.model.patches[patch].area_m2;
+        const glm::dvec3 radiance(scene.radiance[patch]);
+        intensity += radiance * scene.model.patches[patch].area_m2;
+        given.push_back({paths.transfers.row(row).data(), kept_share(radiance, returned)});
       }
       shadow.intensity = glm::vec3(intensity);
       shadow.colors.resize(receivers.vertices.size());
@@ -143,10 +174,23 @@ class Takes {
     }
   }
 
+  /// One source's row of the transfers, and the share of it that an object in the way takes.
+  struct Given {
+    const glm::vec3* row;
+    glm::vec3 share;
+  };
+
+  /// Not below 0: where an object is brighter than what it hides, its shadow takes nothing.
+  static glm::vec3 kept_share(const glm::dvec3& radiance, const glm::dvec3& returned) {
+    glm::dvec3 share(0.0);
+    for (int c = 0; c < 3; ++c)
+      if (radiance[c] > returned[c]) share[c] = (radiance[c] - returned[c]) / radiance[c];
+    return glm::vec3(share);
+  }
+
   glm::vec3 given(std::size_t j, std::uint32_t vertex) const {
-    if (options_.whole_clusters) return paths_.node_row(shadows_[j].cluster.node)[vertex];
     glm::vec3 sum(0.0f);
-    for (const std::uint32_t row : rows_[j]) sum += paths_.transfers.row(row)[vertex];
+    for (const Given& source : given_[j]) sum += source.row[vertex] * source.share;
     return sum;
   }
 
@@ -164,7 +208,8 @@ class Takes {
   const Receivers& receivers_;
   const ShadowTakeOptions& options_;
   std::vector<SourceShadow>& shadows_;
-  std::vector<std::vector<std::uint32_t>> rows_;
+  /// One list a shadow.
+  std::vector<std::vector<Given>> given_;
   std::vector<std::uint8_t> first_set_;
 };
 
@@ -194,21 +239,23 @@ void keep_reached(const Receivers& receivers, std::span<const glm::vec4> positio
 }  // namespace
 
 void find_shadows(const LitScene& scene, const LightPaths& paths, const OccludedLight& occluded,
-                  std::span<const glm::dvec3> caster_corners, const ShadowTakeOptions& options,
-                  DifferentialShadows& result) {
+                  std::span<const ShadowCaster> casters, const IrradianceVolume& light,
+                  const ShadowTakeOptions& options, DifferentialShadows& result) {
   const std::vector<SourceCluster> clusters = choose_sources(paths, occluded, options.passes);
   result.occluded_sources = occluded.sources().size();
   result.receivers = occluded.receivers().size();
   result.left_out = 0;
   result.shadows.clear();
   for (const SourceCluster& cluster : clusters) {
-    const Patch& patch = scene.model.patches[paths.transfers.sources[cluster.brightest]];
-    const std::optional<Cast> cast = cast_from(patch.center, caster_corners);
+    const std::uint32_t number = paths.transfers.sources[cluster.brightest];
+    const Patch& patch = scene.model.patches[number];
+    const std::optional<Cast> cast = cast_from(patch.center, casters);
     if (!cast) {
       ++result.left_out;
       continue;
     }
     result.shadows.push_back({.cluster = cluster,
+                              .patch = number,
                               .light = glm::vec4(glm::vec3(patch.center), 1.0f),
                               .view = cast->view,
                               .casters = cast->casters,
@@ -219,7 +266,7 @@ void find_shadows(const LitScene& scene, const LightPaths& paths, const Occluded
   result.positions.clear();
   for (const std::uint32_t v : receivers.vertices)
     result.positions.emplace_back(scene.model.vertices[v].position, 1.0f);
-  Takes(scene, paths, receivers, occluded, options, result.shadows).run();
+  Takes(scene, paths, receivers, occluded, casters, light, options, result.shadows).run();
   raster::for_each_chunk(result.shadows.size(), 1, options.threads,
                          [&](std::size_t first, std::size_t last) {
                            for (std::size_t j = first; j < last; ++j)

@@ -4,6 +4,7 @@
 // Invariant: the same for every number of threads.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "pipeline/irradiance_volume.h"
 #include "pipeline/light_paths.h"
 #include "pipeline/light_view.h"
 
@@ -39,6 +41,9 @@ struct ShadowTakeOptions {
   /// A cluster's shadow takes the light of all its sources, as in the paper, and not only of those
   /// that may be hidden.
   bool whole_clusters = false;
+  /// An object gives back the light that its side away from a source sends to where it hides that
+  /// source; without it the room sees black objects, as in the paper.
+  bool returned_light = true;
   /// As in_first_set.
   double first_share = 0.5;
   int threads = 0;
@@ -47,6 +52,8 @@ struct ShadowTakeOptions {
 /// One shadow of a frame.
 struct SourceShadow {
   SourceCluster cluster;
+  /// The brightest source's patch.
+  std::uint32_t patch = 0;
   /// Where it is cast from, in the world; w = 1.
   glm::vec4 light{0.0f, 0.0f, 0.0f, 1.0f};
   /// The view from there with the casters in the rectangle, at distances from near_m to far_m.
@@ -74,10 +81,17 @@ struct DifferentialShadows {
   std::size_t occluded_sources = 0, receivers = 0, left_out = 0;
 };
 
-/// For casters with these corners (eight of a box each, in the world). Memory of an earlier frame's
-/// result is used again.
+/// What a caster is to the light of the room.
+struct ShadowCaster {
+  /// Of its bounds, in the world.
+  std::array<glm::dvec3, 8> corners{};
+  /// Diffuse, a mean over its parts.
+  glm::dvec3 reflectance{0.0};
+};
+
+/// `light` is what arrives at the casters. Memory of an earlier frame's result is used again.
 void find_shadows(const LitScene& scene, const LightPaths& paths, const OccludedLight& occluded,
-                  std::span<const glm::dvec3> caster_corners, const ShadowTakeOptions& options,
-                  DifferentialShadows& result);
+                  std::span<const ShadowCaster> casters, const IrradianceVolume& light,
+                  const ShadowTakeOptions& options, DifferentialShadows& result);
 
 }  // namespace gnomon::pipeline

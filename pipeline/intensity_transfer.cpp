@@ -1,5 +1,8 @@
 #include "pipeline/intensity_transfer.h"
 
+#include <algorithm>
+#include <array>
+
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -17,15 +20,30 @@ void intensity_transfers(const ToneCurve& tone, const glm::dvec3& light,
                          std::span<const std::uint8_t> first_set, std::span<glm::vec3> values) {
   raster::require(transfers.size() == values.size() && transfers.size() == first_set.size(),
                   "a source has a transfer, a set and a value");
-  glm::dvec3 left[2] = {light, light};
-  const glm::dvec3 value = tone.value(light);
-  glm::dvec3 before[2] = {value, value};
+  // What is left of the light with the sources of a set so far taken away, and its value; `near` is
+  // where the next value is looked for.
+  struct Set {
+    glm::dvec3 left, value;
+    std::array<std::size_t, 3> near{};
+  };
+  Set first{light, glm::dvec3(0.0), {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const int channel = static_cast<int>(c);
+    first.value[channel] = tone.value(c, light[channel]);
+    first.near[c] = std::min(static_cast<std::size_t>(first.value[channel]), std::size_t{254});
+  }
+  std::array<Set, 2> sets{first, first};
   for (std::size_t j = 0; j < transfers.size(); ++j) {
-    const std::size_t set = first_set[j] ? 0 : 1;
-    left[set] -= glm::dvec3(transfers[j]);
-    const glm::dvec3 after = tone.value(left[set]);
-    values[j] = glm::vec3(before[set] - after);
-    before[set] = after;
+    values[j] = glm::vec3(0.0f);
+    if (transfers[j] == glm::vec3(0.0f)) continue;
+    Set& set = sets[first_set[j] ? 0 : 1];
+    set.left -= glm::dvec3(transfers[j]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const int channel = static_cast<int>(c);
+      const double after = tone.value_from(c, set.left[channel], set.near[c]);
+      values[j][channel] = static_cast<float>(set.value[channel] - after);
+      set.value[channel] = after;
+    }
   }
 }
 

@@ -137,6 +137,7 @@ RayHit RayReference::trace(const Ray& ray, Among visible) const {
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return result;
   result.hit = true;
   result.object = query.hit.geomID;
+  result.triangle = query.hit.primID;
   const Triangles& seen = world_->bodies[result.object].seen;
   const std::uint32_t* index = &seen.indices[3 * static_cast<std::size_t>(query.hit.primID)];
   const glm::dvec3 a(seen.corners[index[0]]), b(seen.corners[index[1]]), c(seen.corners[index[2]]);

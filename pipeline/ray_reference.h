@@ -30,8 +30,8 @@ struct Ray {
 
 struct RayHit {
   bool hit = false;
-  /// Index in Scene::objects.
-  std::size_t object = 0;
+  /// Index in Scene::objects, and of the triangle among those of all its model's parts in turn.
+  std::size_t object = 0, triangle = 0;
   /// Distance along the ray in units of its direction's length.
   double distance = 0.0;
   glm::dvec3 point{0.0};

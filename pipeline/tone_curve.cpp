@@ -19,6 +19,22 @@ double ToneCurve::value(std::size_t channel, double radiance) const {
   return static_cast<double>(above - table.begin() - 1) + (radiance - low) / (high - low);
 }
 
+double ToneCurve::value_from(std::size_t channel, double radiance, std::size_t& near) const {
+  const std::array<float, 256>& table = radiance_from_value[channel];
+  if (!(radiance > static_cast<double>(table.front()))) {
+    near = 0;
+    return 0.0;
+  }
+  if (radiance >= static_cast<double>(table.back())) {
+    near = 254;
+    return 255.0;
+  }
+  while (static_cast<double>(table[near]) > radiance) --near;
+  while (static_cast<double>(table[near + 1]) <= radiance) ++near;
+  const double low = table[near], high = table[near + 1];
+  return static_cast<double>(near) + (radiance - low) / (high - low);
+}
+
 glm::dvec3 ToneCurve::value(const glm::dvec3& radiance) const {
   return {value(0, radiance.x), value(1, radiance.y), value(2, radiance.z)};
 }

@@ -17,6 +17,9 @@ struct ToneCurve {
   /// The pixel value of a radiance, in [0, 255], not rounded. NaN gives 0.
   glm::dvec3 value(const glm::dvec3& radiance) const;
   double value(std::size_t channel, double radiance) const;
+  /// The same, found from the whole value `near` (0 to 254) on, which becomes the one below the
+  /// result: for a row of radiances that change little from one to the next.
+  double value_from(std::size_t channel, double radiance, std::size_t& near) const;
   /// The radiance of a pixel value in [0, 255], clamped to that.
   double radiance(std::size_t channel, double value) const;
 

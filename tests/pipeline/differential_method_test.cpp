@@ -160,6 +160,59 @@ TEST(Differential, IsNearTheReferenceAndNearerWithMorePasses) {
   EXPECT_LT(before, 0.15 * nothing);
 }
 
+// Oracle: the reference's own picture of black objects; floor beside a light ball keeps more light.
+TEST(Differential, ObjectsGiveBackLightAsInTheReference) {
+  const Setting setting;
+  Scene ball = ball_at({0.3f, 0.3f, 0.0f});
+  Model model = *ball.objects[0].model;
+  model.parts[0].material.diffuse = glm::vec4(0.9f, 0.9f, 0.9f, 1.0f);
+  ball.objects[0].model = std::make_shared<const Model>(model);
+  const DifferentialReference reference(setting.scene, ball);
+  const auto rays = pixel_rays(setting.camera);
+  const auto with = reference.render(rays, setting.rows, {}),
+             without = reference.render(rays, setting.rows, {.returned_light = false});
+  std::vector<std::uint8_t> where;
+  double returned = 0.0;
+  for (std::size_t i = 0; i < with.shadow.size(); ++i) {
+    where.push_back(with.shadow[i] && !with.object[i] ? 1 : 0);
+    if (where.back()) returned += with.pixels[3 * i] - without.pixels[3 * i];
+  }
+  EXPECT_GT(returned, 0.0);
+  const auto draw_with = [&](bool returned_light) {
+    return draw(setting, ball,
+                {.take = {.passes = 600,
+                          .precision = ShadowPrecision::radiance,
+                          .returned_light = returned_light}});
+  };
+  const double near = rms(draw_with(true), with.pixels, 3, where),
+               far = rms(draw_with(false), with.pixels, 3, where);
+  std::printf("rms to the reference: %.3f, of a black ball %.3f\n", near, far);
+  EXPECT_LT(near, 0.7 * far);
+}
+
+// Oracle: the reference, which asks rays of the sun as of every other patch.
+TEST(Differential, TheSunIsASourceWithAHardShadow) {
+  const Setting setting({.patches = 600, .sun_irradiance = 15.0f});
+  const Scene ball = ball_at({0.3f, 0.6f, 0.0f});
+  const DifferentialReference reference(setting.scene, ball);
+  const auto exact = reference.render(pixel_rays(setting.camera), setting.rows, {});
+  std::vector<std::uint8_t> where, photograph;
+  for (std::size_t i = 0; i < exact.shadow.size(); ++i) {
+    where.push_back(exact.shadow[i] && !exact.object[i] ? 1 : 0);
+    photograph.insert(photograph.end(),
+                      {setting.rows[3 * i], setting.rows[3 * i + 1], setting.rows[3 * i + 2], 0});
+  }
+  const double nothing = rms(photograph, exact.pixels, 3, where);
+  for (const ShadowMask mask : {ShadowMask::map, ShadowMask::volumes}) {
+    const double error =
+        rms(draw(setting, ball,
+                 {.take = {.passes = 600, .precision = ShadowPrecision::radiance}, .mask = mask}),
+            exact.pixels, 3, where);
+    std::printf("sun, mask %d: rms %.3f of %.3f\n", static_cast<int>(mask), error, nothing);
+    EXPECT_LT(error, 0.2 * nothing);
+  }
+}
+
 TEST(Differential, VolumesAndMapsAgreeButForTexelsAlongOutlines) {
   const Setting setting;
   const Scene ball = ball_at({0.3f, 0.3f, 0.0f});
@@ -197,13 +250,15 @@ TEST(Differential, AShadowModelCastsInTheObjectsPlace) {
 // Oracle: what is taken in floats, not rounded at all.
 TEST(Differential, BytesLoseFaintShadowsAndDitherKeepsThemOnAverage) {
   const Setting setting;
+  // Black, so that there are many faint shadows: dither is even over many, not over a few.
   const Scene ball = ball_at({0.3f, 0.5f, 0.0f});
   const auto taken = [&](ShadowPrecision precision) {
     DifferentialMethod method(setting.scene, setting.paths);
     Picture picture(precision == ShadowPrecision::values ? raster::ColorFormat::rgba32f
                                                          : raster::ColorFormat::rgba8);
-    raster::execute(method.record(ball, setting.camera, setting.photograph(), picture.targets(),
-                                  {.take = {.passes = 500, .precision = precision}}));
+    raster::execute(
+        method.record(ball, setting.camera, setting.photograph(), picture.targets(),
+                      {.take = {.passes = 500, .precision = precision, .returned_light = false}}));
     double sum = 0.0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
@@ -238,6 +293,23 @@ TEST(Differential, IsTheSameForEveryNumberOfThreadsAndVectorWidth) {
       }
     }
   }
+}
+
+// Oracle: a method that draws its first frame.
+TEST(Differential, AMovingCameraAndObjectLeaveNothingBehind) {
+  Setting setting;
+  DifferentialMethod moving(setting.scene, setting.paths);
+  const Camera home = setting.camera;
+  for (const float turn : {0.0f, 0.4f, -0.3f, 0.0f}) {
+    setting.camera =
+        test::look({0.6f + turn, 1.2f, 1.8f}, {0.1f, 0.2f + turn, -0.4f}, kWidth, kHeight, 60.0f);
+    const Scene ball = ball_at({0.3f - turn, 0.3f, 0.5f * turn});
+    for (const ShadowMask mask : {ShadowMask::map, ShadowMask::volumes}) {
+      const DifferentialOptions options{.take = {.passes = 20}, .mask = mask};
+      EXPECT_EQ(draw(moving, setting, ball, options), draw(setting, ball, options)) << turn;
+    }
+  }
+  EXPECT_EQ(setting.camera.clip_from_world, home.clip_from_world);
 }
 
 TEST(Differential, AnObjectAroundASourceIsLeftOutNotDrawnWrongly) {

@@ -1,285 +1,308 @@
 // Differential shadows against photographs of the real thing, and against rays.
-// Usage: measure_differential LIT_SCENE CAPTURE TRUTH [OUT]   where CAPTURE has background.png,
-// camera.yml and camera_pose.json, TRUTH a folder for each photograph with photo.png, pose.json and
-// object_mask.png; models are looked for beside CAPTURE's own. Pictures go to OUT; references that
-// lie there already (NAME_reference.png) are read and not made again.
+// Usage: measure_differential LIT_SCENE CAPTURE TRUTH [OUT]   (folders as in differential_truth.h)
+// Prints tables. With OUT: pictures of every setting, references (those that lie there already are
+// read and not made again), and contact.png: a row a photograph, of photograph, 50 passes,
+// reference, and the FLIP errors of these two.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <memory>
-#include <optional>
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "ar/camera.h"
 #include "ar/differential_augment.h"
 #include "ar/flip.h"
 #include "ar/image_file.h"
-#include "ar/lit_scene_file.h"
-#include "ar/model_file.h"
 #include "ar/stopwatch.h"
-#include "capture_json.h"
-#include "pipeline/differential_reference.h"
-#include "statistics.h"
+#include "differential_truth.h"
 
 namespace gnomon::ar {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 using pipeline::ShadowMask;
 using pipeline::ShadowPrecision;
 
-struct Truth {
-  std::string name;
-  Image photo, object_mask;
-  pipeline::Scene scene;
-};
-
-struct Capture {
-  std::shared_ptr<const pipeline::LitScene> lit;
-  CameraModel camera;
-  glm::dmat4 world_from_camera{1.0};
-  Image background;
-  std::vector<Truth> truths;
-};
-
-Capture read(const fs::path& lit, const fs::path& capture, const fs::path& truth) {
-  Capture out;
-  out.lit = std::make_shared<const pipeline::LitScene>(read_lit_scene(lit));
-  out.background = read_image_rgb(capture / "background.png");
-  out.camera = camera_for_picture(read_camera(capture / "camera.yml"), out.background.width,
-                                  out.background.height);
-  out.world_from_camera =
-      matrix_of(load_json(capture / "camera_pose.json").at("world_from_camera_opencv"));
-  std::set<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(truth)) {
-    if (entry.is_directory()) folders.insert(entry.path());
-  }
-  for (const fs::path& folder : folders) {
-    Truth one{folder.filename().string(),
-              read_image_rgb(folder / "photo.png"),
-              read_image(folder / "object_mask.png"),
-              {}};
-    const json pose = load_json(folder / "pose.json");
-    for (const json& object : pose.at("objects")) {
-      const std::string model = object.at("model").get<std::string>();
-      one.scene.objects.push_back(
-          {.name = model,
-           .model = std::make_shared<const pipeline::Model>(load_model(capture / model).model),
-           .world_from_model = glm::mat4(matrix_of(object.at("world_from_object")))});
-    }
-    out.truths.push_back(std::move(one));
-  }
-  return out;
-}
-
-std::vector<pipeline::Ray> photo_rays(const Capture& capture) {
-  const Lens lens(capture.camera);
-  std::vector<pipeline::Ray> rays;
-  for (int y = 0; y < capture.background.height; ++y) {
-    for (int x = 0; x < capture.background.width; ++x) {
-      const auto at = lens.undistort({x, y});
-      const glm::dvec3 direction(at.value_or(glm::dvec2(0.0)), 1.0);
-      rays.push_back({glm::dvec3(capture.world_from_camera[3]),
-                      glm::dmat3(capture.world_from_camera) * direction});
-    }
-  }
-  return rays;
-}
-
-/// Pixels in the shadow: the reference takes something there, and no virtual object touches them in
-/// photograph or model.
-std::vector<std::size_t> shadow_region(const Truth& truth,
-                                       const pipeline::ReferencePicture& reference,
-                                       const Image& background) {
-  std::vector<std::size_t> region;
-  for (std::size_t i = 0; i < reference.shadow.size(); ++i) {
-    const bool object =
-        reference.object[i] || truth.object_mask.pixels[i * truth.object_mask.channels] != 0;
-    int taken = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      taken = std::max(taken, background.pixels[3 * i + c] - reference.pixels[3 * i + c]);
-    if (!object && taken >= 2) region.push_back(i);
-  }
-  return region;
-}
-
-double rmse(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b,
-            const std::vector<std::size_t>& region) {
-  double sum = 0.0;
-  for (const std::size_t i : region) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double d = static_cast<double>(a[3 * i + c]) - b[3 * i + c];
-      sum += d * d;
-    }
-  }
-  return region.empty() ? 0.0 : std::sqrt(sum / (3.0 * static_cast<double>(region.size())));
-}
-
-/// Mean darkening, in values.
-double strength(const std::vector<std::uint8_t>& background, const std::vector<std::uint8_t>& a,
-                const std::vector<std::size_t>& region) {
-  double sum = 0.0;
-  for (const std::size_t i : region) {
-    for (std::size_t c = 0; c < 3; ++c)
-      sum += static_cast<double>(background[3 * i + c]) - a[3 * i + c];
-  }
-  return region.empty() ? 0.0 : sum / (3.0 * static_cast<double>(region.size()));
-}
+constexpr std::size_t kAll = 1'000'000;
+constexpr int kTimedFrames = 11;
 
 struct Setting {
   std::string name;
   DifferentialSettings settings;
 };
 
-DifferentialSettings setting(std::size_t passes, ShadowPrecision precision,
-                             ShadowMask mask = ShadowMask::map) {
-  DifferentialSettings out;
-  out.method.take.passes = passes;
-  out.method.take.precision = precision;
-  out.method.mask = mask;
-  return out;
+std::string named(std::size_t passes, const std::string& more) {
+  return (passes == kAll ? "all" : std::to_string(passes)) + more;
 }
 
 std::vector<Setting> settings() {
-  constexpr std::size_t kAll = 1'000'000;
   std::vector<Setting> out;
-  for (const std::size_t n : {std::size_t{5}, std::size_t{10}, std::size_t{20}, std::size_t{50},
-                              std::size_t{100}, kAll}) {
-    out.push_back({n == kAll ? "all" : std::to_string(n), setting(n, ShadowPrecision::bytes)});
+  const auto add = [&](std::size_t passes, const std::string& more) -> DifferentialSettings& {
+    DifferentialSettings& settings = out.emplace_back(Setting{named(passes, more), {}}).settings;
+    settings.method.take.passes = passes;
+    settings.masks = false;
+    return settings;
+  };
+  for (const std::size_t n :
+       {std::size_t{5}, std::size_t{10}, std::size_t{20}, std::size_t{50}, std::size_t{100}, kAll})
+    add(n, "");
+  for (const std::size_t n : {std::size_t{10}, std::size_t{20}, std::size_t{50}})
+    add(n, " volumes").method.mask = ShadowMask::volumes;
+  for (const std::size_t n : {std::size_t{50}, kAll}) {
+    add(n, " dithered").method.take.precision = ShadowPrecision::dithered;
+    add(n, " values").method.take.precision = ShadowPrecision::values;
+    add(n, " radiance").method.take.precision = ShadowPrecision::radiance;
   }
-  out.push_back({"50 dithered", setting(50, ShadowPrecision::dithered)});
-  out.push_back({"50 values", setting(50, ShadowPrecision::values)});
-  out.push_back({"50 radiance", setting(50, ShadowPrecision::radiance)});
-  out.push_back({"all dithered", setting(kAll, ShadowPrecision::dithered)});
-  out.push_back({"all radiance", setting(kAll, ShadowPrecision::radiance)});
-  out.push_back({"50 volumes", setting(50, ShadowPrecision::bytes, ShadowMask::volumes)});
-  out.push_back({"50 whole clusters", setting(50, ShadowPrecision::bytes)});
-  out.back().settings.method.take.whole_clusters = true;
-  out.push_back({"50 pruned (paper)", setting(50, ShadowPrecision::bytes)});
-  out.back().settings.light.drop_pruned = true;
-  out.push_back({"all, all power, radiance", setting(kAll, ShadowPrecision::radiance)});
-  out.back().settings.light.transfer.power_share = 1.0;
+  add(50, " all triangles").occluder_triangles = 0;
+  add(50, " 100 triangles").occluder_triangles = 100;
+  add(50, " whole clusters").method.take.whole_clusters = true;
+  add(50, " pruned shafts dropped").light.drop_pruned = true;
+  add(50, " black objects").method.take.returned_light = false;
+  DifferentialSettings& paper = add(50, " as in the paper");
+  paper.method.take.returned_light = false;
+  paper.method.take.whole_clusters = true;
+  paper.light.drop_pruned = true;
+  DifferentialSettings& most = add(kAll, " of all power, radiance");
+  most.method.take.precision = ShadowPrecision::radiance;
+  most.light.transfer.power_share = 1.0;
   return out;
 }
 
-double median_ms(DifferentialAugmenter& augmenter, const Image& background,
-                 const pipeline::Scene& scene, const glm::dmat4& pose, double& record_ms,
-                 double& execute_ms) {
-  std::vector<double> whole, record, execute;
-  for (int i = 0; i < 11; ++i) {
+/// A photograph with what is held against it.
+struct Case {
+  const Truth* truth;
+  pipeline::ReferencePicture reference;
+  std::vector<std::size_t> region;
+  /// One value a region's pixel and nothing else.
+  Image mask;
+};
+
+Image region_mask(const std::vector<std::size_t>& region, const Image& like) {
+  Image mask{like.width, like.height, 1, {}};
+  mask.pixels.resize(static_cast<std::size_t>(like.width) * like.height);
+  for (const std::size_t i : region) mask.pixels[i] = 255;
+  return mask;
+}
+
+double flip_error(const Image& photo, const Image& test, const Image& mask) {
+  return mean_error(flip(photo, test), &mask);
+}
+
+Image with_pixels(const Image& like, const std::vector<std::uint8_t>& pixels) {
+  Image out = like;
+  out.pixels = pixels;
+  return out;
+}
+
+std::vector<Case> reference_table(const TruthSet& set, const fs::path& out) {
+  const std::vector<pipeline::Ray> rays = photo_rays(set);
+  const Image& background = set.background;
+  fmt::print(
+      "| photograph | pixels | RMSE without a shadow | of the reference | 1 - ratio | FLIP without "
+      "| of the reference | darker by, photograph | reference | s |\n");
+  std::vector<Case> cases;
+  for (const Truth& truth : set.truths) {
     Stopwatch watch;
-    const Augmented out = augmenter.augment(background, scene, pose);
+    Case& at = cases.emplace_back(Case{&truth, reference_of(set, truth, rays, out), {}, {}});
+    const double seconds = watch.lap_ms() / 1000.0;
+    at.region = shadow_region(truth, at.reference, background);
+    at.mask = region_mask(at.region, background);
+    const double without = rmse(background.pixels, truth.photo.pixels, at.region);
+    const double with = rmse(at.reference.pixels, truth.photo.pixels, at.region);
+    fmt::print(
+        "| {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.4f} | {:.4f} | {:.2f} | {:.2f} | {:.1f} |\n",
+        truth.name, at.region.size(), without, with, 1.0 - with / without,
+        flip_error(truth.photo, background, at.mask),
+        flip_error(truth.photo, with_pixels(background, at.reference.pixels), at.mask),
+        mean_difference(background.pixels, truth.photo.pixels, at.region),
+        mean_difference(background.pixels, at.reference.pixels, at.region), seconds);
+    std::fflush(stdout);
+  }
+  return cases;
+}
+
+struct Times {
+  double whole_ms = 0.0, record_ms = 0.0, execute_ms = 0.0, composite_ms = 0.0, traverse_ms = 0.0;
+};
+
+/// Medians.
+Times time_frames(DifferentialAugmenter& augmenter, const TruthSet& set, const Truth& truth) {
+  std::vector<double> whole, record, execute, composite, traverse;
+  for (int i = 0; i < kTimedFrames; ++i) {
+    Stopwatch watch;
+    const Augmented out = augmenter.augment(set.background, truth.scene, set.world_from_camera);
     whole.push_back(watch.lap_ms());
     record.push_back(out.record_ms);
     execute.push_back(out.execute_ms);
+    composite.push_back(out.composite_ms);
+    traverse.push_back(augmenter.report().traverse_ms);
   }
-  for (auto* list : {&whole, &record, &execute}) std::sort(list->begin(), list->end());
-  record_ms = record[5];
-  execute_ms = execute[5];
-  return whole[5];
+  const auto median = [](std::vector<double>& list) {
+    std::sort(list.begin(), list.end());
+    return list[list.size() / 2];
+  };
+  return {median(whole), median(record), median(execute), median(composite), median(traverse)};
 }
 
-/// The picture, and as its mask's channels: object, shadow.
-pipeline::ReferencePicture reference_of(const Capture& capture, const Truth& truth,
-                                        const std::vector<pipeline::Ray>& rays,
-                                        const fs::path& out) {
-  const fs::path file = out / (truth.name + "_reference.png");
-  const fs::path mask_file = out / (truth.name + "_reference_mask.png");
-  if (!out.empty() && fs::exists(file) && fs::exists(mask_file)) {
-    pipeline::ReferencePicture known{read_image_rgb(file).pixels, {}, {}};
-    const Image mask = read_image_rgb(mask_file);
-    for (std::size_t i = 0; i < mask.pixels.size(); i += 3) {
-      known.object.push_back(mask.pixels[i] != 0 ? 1 : 0);
-      known.shadow.push_back(mask.pixels[i + 1] != 0 ? 1 : 0);
-    }
-    return known;
-  }
-  const pipeline::DifferentialReference reference(*capture.lit, truth.scene);
-  pipeline::ReferencePicture made = reference.render(rays, capture.background.pixels, {});
-  if (out.empty()) return made;
-  Image picture = capture.background, mask = capture.background;
-  picture.pixels = made.pixels;
-  for (std::size_t i = 0; i < made.object.size(); ++i) {
-    mask.pixels[3 * i] = made.object[i] ? 255 : 0;
-    mask.pixels[3 * i + 1] = made.shadow[i] ? 255 : 0;
-    mask.pixels[3 * i + 2] = 0;
-  }
-  write_png(file, picture);
-  write_png(mask_file, mask);
-  return made;
+/// One setting on one photograph.
+struct Outcome {
+  double ratio = 0.0, reference_ratio = 0.0, flip = 0.0, to_reference = 0.0, darker = 0.0;
+  Times times;
+  std::size_t shadows = 0, sources = 0;
+  Image picture;
+};
+
+void print_row(const std::string& setting, const std::string& photograph, const Outcome& o) {
+  fmt::print(
+      "| {} | {} | {} of {} | {:.3f} | {:.3f} | {:.4f} | {:.2f} | {:.2f} | {:.1f} | {:.2f} | "
+      "{:.2f} | {:.2f} | {:.2f} |\n",
+      setting, photograph, o.shadows, o.sources, o.ratio, o.reference_ratio, o.flip, o.to_reference,
+      o.darker, o.times.whole_ms, o.times.record_ms, o.times.execute_ms, o.times.composite_ms,
+      o.times.traverse_ms);
+  std::fflush(stdout);
 }
 
-void measure(const Capture& capture, const fs::path& out) {
-  const std::vector<pipeline::Ray> rays = photo_rays(capture);
-  const Image& background = capture.background;
-  std::vector<pipeline::ReferencePicture> references;
-  std::vector<std::vector<std::size_t>> regions;
-  fmt::print("reference and photographs (values of 255; 1 - RMSE / RMSE without a shadow)\n");
-  fmt::print(
-      "| photograph | pixels | RMSE without | reference | 1 - ratio | darker, photograph | "
-      "reference | s |\n");
-  for (const Truth& truth : capture.truths) {
-    Stopwatch watch;
-    references.push_back(reference_of(capture, truth, rays, out));
-    const double seconds = watch.lap_ms() / 1000.0;
-    regions.push_back(shadow_region(truth, references.back(), background));
-    const auto& region = regions.back();
-    const double without = rmse(background.pixels, truth.photo.pixels, region);
-    const double with = rmse(references.back().pixels, truth.photo.pixels, region);
-    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} |\n", truth.name,
-               region.size(), without, with, 1.0 - with / without,
-               strength(background.pixels, truth.photo.pixels, region),
-               strength(background.pixels, references.back().pixels, region), seconds);
-    std::fflush(stdout);
+Outcome measure(DifferentialAugmenter& augmenter, const TruthSet& set, const Case& at) {
+  const Truth& truth = *at.truth;
+  const Image& background = set.background;
+  Outcome o;
+  o.picture = augmenter.augment(background, truth.scene, set.world_from_camera).composite;
+  o.times = time_frames(augmenter, set, truth);
+  o.shadows = augmenter.report().shadows;
+  o.sources = augmenter.report().occluded_sources;
+  const double without = rmse(background.pixels, truth.photo.pixels, at.region);
+  o.ratio = 1.0 - rmse(o.picture.pixels, truth.photo.pixels, at.region) / without;
+  o.reference_ratio = 1.0 - rmse(at.reference.pixels, truth.photo.pixels, at.region) / without;
+  o.flip = flip_error(truth.photo, o.picture, at.mask);
+  o.to_reference = rmse(o.picture.pixels, at.reference.pixels, at.region);
+  o.darker = mean_difference(background.pixels, o.picture.pixels, at.region);
+  return o;
+}
+
+Outcome mean_of(const std::vector<Outcome>& all) {
+  Outcome mean;
+  const auto n = static_cast<double>(all.size());
+  for (const Outcome& o : all) {
+    mean.ratio += o.ratio / n;
+    mean.reference_ratio += o.reference_ratio / n;
+    mean.flip += o.flip / n;
+    mean.to_reference += o.to_reference / n;
+    mean.darker += o.darker / n;
+    mean.shadows = std::max(mean.shadows, o.shadows);
+    mean.sources = std::max(mean.sources, o.sources);
+    mean.times.whole_ms += o.times.whole_ms / n;
+    mean.times.record_ms += o.times.record_ms / n;
+    mean.times.execute_ms += o.times.execute_ms / n;
+    mean.times.composite_ms += o.times.composite_ms / n;
+    mean.times.traverse_ms += o.times.traverse_ms / n;
   }
-  const Lens lens(capture.camera);
+  return mean;
+}
+
+/// A setting's pictures, one a photograph.
+using Pictures = std::map<std::string, std::vector<Image>>;
+
+Pictures settings_table(const TruthSet& set, const std::vector<Case>& cases, const fs::path& out) {
+  const Lens lens(set.camera);
+  Pictures pictures;
   fmt::print(
-      "\n| n | photograph | sources | shadows | 1 - ratio | reference's | RMSE to reference "
-      "| darker | whole ms | record | execute |\n");
+      "\n| n | photograph | shadows | 1 - ratio | reference's | FLIP | RMSE to the reference | "
+      "darker by | ms: whole | record | execute | composite | traversal |\n");
   for (const Setting& one : settings()) {
     Stopwatch watch;
-    DifferentialAugmenter augmenter(lens, capture.lit, capture.world_from_camera, one.settings);
+    DifferentialAugmenter augmenter(lens, set.lit, set.world_from_camera, one.settings);
     const double setup_ms = watch.lap_ms();
+    std::vector<Outcome> all;
+    for (const Case& at : cases) {
+      all.push_back(measure(augmenter, set, at));
+      print_row(one.name, at.truth->name, all.back());
+      if (!out.empty())
+        write_png(out / (at.truth->name + "_" + one.name + ".png"), all.back().picture);
+      pictures[one.name].push_back(all.back().picture);
+    }
+    print_row(one.name, "mean", mean_of(all));
     const pipeline::LightPaths& paths = augmenter.paths();
     fmt::print("{}: {} sources, {} leaf shafts, {} pruned, {:.0f} ms before the first frame\n",
                one.name, paths.transfers.sources.size(), paths.leaf_shafts, paths.pruned_shafts,
                setup_ms);
-    double sum = 0.0, sum_reference = 0.0;
-    for (std::size_t t = 0; t < capture.truths.size(); ++t) {
-      const Truth& truth = capture.truths[t];
-      const Augmented picture =
-          augmenter.augment(background, truth.scene, capture.world_from_camera);
-      const double without = rmse(background.pixels, truth.photo.pixels, regions[t]);
-      const double ratio =
-          1.0 - rmse(picture.composite.pixels, truth.photo.pixels, regions[t]) / without;
-      const double ratio_reference =
-          1.0 - rmse(references[t].pixels, truth.photo.pixels, regions[t]) / without;
-      sum += ratio;
-      sum_reference += ratio_reference;
-      double record_ms = 0.0, execute_ms = 0.0;
-      const double ms = median_ms(augmenter, background, truth.scene, capture.world_from_camera,
-                                  record_ms, execute_ms);
-      fmt::print(
-          "| {} | {} | {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} | {:.1f} | {:.1f} "
-          "|\n",
-          one.name, truth.name, augmenter.report().occluded_sources, augmenter.report().shadows,
-          ratio, ratio_reference, rmse(picture.composite.pixels, references[t].pixels, regions[t]),
-          strength(background.pixels, picture.composite.pixels, regions[t]), ms, record_ms,
-          execute_ms);
-      std::fflush(stdout);
-      if (!out.empty()) write_png(out / (truth.name + "_" + one.name + ".png"), picture.composite);
-    }
-    fmt::print("mean of {}: {:.3f}, of the reference {:.3f}\n", one.name,
-               sum / static_cast<double>(capture.truths.size()),
-               sum_reference / static_cast<double>(capture.truths.size()));
   }
+  return pictures;
+}
+
+/// Bytes against what one rounding at the end gives, over every pixel without a virtual object.
+void precision_table(const std::vector<Case>& cases, const Pictures& pictures) {
+  fmt::print(
+      "\n| pictures | beside | mean difference where they differ from the photograph "
+      "| mean of its size | largest |\n");
+  const auto compare = [&](const std::string& a, const std::string& b) {
+    double sum = 0.0, size = 0.0;
+    std::size_t count = 0;
+    int worst = 0;
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      const Image &x = pictures.at(a)[k], &y = pictures.at(b)[k];
+      for (const std::size_t i : cases[k].region) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          const int d = x.pixels[3 * i + c] - y.pixels[3 * i + c];
+          sum += d;
+          size += std::abs(d);
+          worst = std::max(worst, std::abs(d));
+          ++count;
+        }
+      }
+    }
+    const auto n = static_cast<double>(std::max<std::size_t>(count, 1));
+    fmt::print("| {} | {} | {:+.3f} | {:.3f} | {} |\n", a, b, sum / n, size / n, worst);
+  };
+  for (const std::string n : {"50", "all"}) {
+    compare(n, n + " values");
+    compare(n, n + " radiance");
+    compare(n + " dithered", n + " values");
+    compare(n + " values", n + " radiance");
+  }
+}
+
+void paste(Image& sheet, const Image& picture, int x0, int y0) {
+  // Half the size: the mean of two by two pixels.
+  for (int y = 0; y < picture.height / 2; ++y) {
+    for (int x = 0; x < picture.width / 2; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        int sum = 2;
+        for (const int j : {0, 1})
+          for (const int i : {0, 1}) sum += picture.at(2 * x + i, 2 * y + j)[c];
+        sheet.at(x0 + x, y0 + y)[c] = static_cast<std::uint8_t>(sum / 4);
+      }
+    }
+  }
+}
+
+void write_contact_sheet(const fs::path& file, const TruthSet& set, const std::vector<Case>& cases,
+                         const Pictures& pictures) {
+  const int width = set.background.width / 2, height = set.background.height / 2;
+  Image sheet{5 * width, static_cast<int>(cases.size()) * height, 3, {}};
+  sheet.pixels.resize(std::size_t{3} * sheet.width * sheet.height);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const Image& photo = cases[k].truth->photo;
+    const Image& ours = pictures.at("50")[k];
+    const Image reference = with_pixels(photo, cases[k].reference.pixels);
+    const Image errors[] = {error_picture(flip(photo, ours)),
+                            error_picture(flip(photo, reference))};
+    int x = 0;
+    for (const Image* one : {&photo, &ours, &reference, &errors[0], &errors[1]}) {
+      paste(sheet, *one, x, static_cast<int>(k) * height);
+      x += width;
+    }
+  }
+  write_png(file, sheet);
+}
+
+void run(const TruthSet& set, const fs::path& out) {
+  const std::vector<Case> cases = reference_table(set, out);
+  const Pictures pictures = settings_table(set, cases, out);
+  precision_table(cases, pictures);
+  if (!out.empty()) write_contact_sheet(out / "contact.png", set, cases, pictures);
 }
 
 }  // namespace
@@ -291,7 +314,7 @@ int main(int argc, char** argv) {
       throw std::runtime_error("usage: measure_differential LIT_SCENE CAPTURE TRUTH [OUT]");
     const std::filesystem::path out = argc == 5 ? argv[4] : "";
     if (!out.empty()) std::filesystem::create_directories(out);
-    gnomon::ar::measure(gnomon::ar::read(argv[1], argv[2], argv[3]), out);
+    gnomon::ar::run(gnomon::ar::read_truths(argv[1], argv[2], argv[3]), out);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "measure_differential: %s\n", error.what());

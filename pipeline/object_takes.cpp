@@ -1,0 +1,164 @@
+#include "pipeline/object_takes.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "pipeline/intensity_transfer.h"
+#include "raster/executor.h"
+
+namespace gnomon::pipeline {
+namespace {
+
+/// A triangle that is turned from the eye by less than this counts as seen: coordinates are rounded
+/// before the rasterizer decides.
+constexpr double kLeastCosine = -1e-3;
+
+/// A shadow's light as it falls on one object.
+struct PointSource {
+  glm::dvec3 position, normal;
+  /// Of its light, what the room lets through to the object's middle.
+  glm::dvec3 intensity;
+  std::uint8_t first_set;
+};
+
+/// The mesh's triangles that may be seen from the eye: of a closed one those that face it.
+std::vector<std::uint32_t> seen_triangles(const PlacedObject& object, const Mesh& mesh,
+                                          const glm::dvec3& eye) {
+  if (!object.topology->faults.closed_manifold()) return mesh.indices;
+  const glm::dmat4 world(object.object->world_from_model);
+  std::vector<glm::dvec3> positions;
+  positions.reserve(mesh.positions.size());
+  for (const glm::vec4& p : mesh.positions) positions.emplace_back(world * glm::dvec4(p));
+  const double side = object.front_face == raster::FrontFace::ccw ? 1.0 : -1.0;
+  std::vector<std::uint32_t> seen;
+  for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+    const std::uint32_t* i = &mesh.indices[t];
+    const glm::dvec3 &a = positions[i[0]], &b = positions[i[1]], &c = positions[i[2]];
+    const glm::dvec3 normal = glm::cross(b - a, c - a) * side, to = eye - a;
+    if (glm::dot(normal, to) > kLeastCosine * glm::length(normal) * glm::length(to))
+      seen.insert(seen.end(), i, i + 3);
+  }
+  return seen;
+}
+
+void keep_taken(std::span<const std::uint32_t> seen, MeshTake& take) {
+  const auto is_nothing = [&](std::uint32_t v) { return take.colors[v] == glm::vec4(0.0f); };
+  for (std::size_t t = 0; t < seen.size(); t += 3) {
+    const std::uint32_t* i = &seen[t];
+    if (!std::all_of(i, i + 3, is_nothing)) take.indices.insert(take.indices.end(), i, i + 3);
+  }
+}
+
+class MeshTaker {
+ public:
+  MeshTaker(const LitScene& scene, const ShadowTakeOptions& options,
+            std::span<const PointSource> sources)
+      : scene_(scene), options_(options), sources_(sources) {
+    for (const PointSource& source : sources) first_set_.push_back(source.first_set);
+  }
+
+  /// `radiance` is one a vertex.
+  void take(const PlacedObject& object, std::size_t part, std::span<const glm::vec3> radiance,
+            std::span<MeshTake*> takes) const {
+    const Mesh& mesh = *object.meshes[part];
+    const glm::dvec3 diffuse(linear_color(object.object->model->parts[part].material.diffuse));
+    for (MeshTake* take : takes) take->colors.resize(mesh.positions.size());
+    constexpr std::size_t kChunk = 64;
+    raster::for_each_chunk(
+        mesh.positions.size(), kChunk, options_.threads, [&](std::size_t first, std::size_t last) {
+          std::vector<glm::vec3> transfers(sources_.size()), values(sources_.size());
+          for (std::size_t v = first; v < last; ++v) {
+            const glm::dvec3 at(object.object->world_from_model * mesh.positions[v]);
+            const glm::dvec3 normal =
+                glm::normalize(glm::dvec3(object.world_from_model_normal * mesh.normals[v]));
+            for (std::size_t j = 0; j < sources_.size(); ++j)
+              transfers[j] = glm::vec3(diffuse * arriving(sources_[j], at, normal));
+            if (options_.precision == ShadowPrecision::radiance) {
+              values = transfers;
+            } else {
+              intensity_transfers(scene_.tone, glm::dvec3(radiance[v]), transfers, first_set_,
+                                  values);
+              for (glm::vec3& value : values) value /= 255.0f;
+            }
+            for (std::size_t j = 0; j < sources_.size(); ++j)
+              takes[j]->colors[v] = glm::vec4(values[j], 0.0f);
+          }
+        });
+  }
+
+ private:
+  /// Irradiance over pi.
+  static glm::dvec3 arriving(const PointSource& source, const glm::dvec3& at,
+                             const glm::dvec3& normal) {
+    const glm::dvec3 to = source.position - at;
+    const double here = glm::dot(to, normal), there = -glm::dot(to, source.normal);
+    if (!(here > 0.0 && there > 0.0)) return glm::dvec3(0.0);
+    const double square = glm::dot(to, to);
+    return source.intensity * (here * there / (square * square * std::numbers::pi));
+  }
+
+  const LitScene& scene_;
+  const ShadowTakeOptions& options_;
+  std::span<const PointSource> sources_;
+  std::vector<std::uint8_t> first_set_;
+};
+
+std::vector<PointSource> sources_at(const LitScene& scene, const PatchVisibility& visibility,
+                                    const PlacedObject& object,
+                                    std::span<const SourceShadow> shadows,
+                                    const ShadowTakeOptions& options) {
+  constexpr int kRays = 4;
+  const Topology& topology = *object.topology;
+  const glm::dvec3 middle(object.object->world_from_model *
+                          glm::vec4(glm::vec3((topology.low + topology.high) * 0.5), 1.0f));
+  std::vector<PointSource> sources;
+  for (const SourceShadow& shadow : shadows) {
+    const Patch& patch = scene.model.patches[shadow.patch];
+    const double seen =
+        visibility.visible_share(patch, middle, glm::normalize(patch.center - middle), kRays);
+    sources.push_back({patch.center, patch.normal, glm::dvec3(shadow.intensity) * seen,
+                       in_first_set(shadow.cluster.brightest, options.first_share)
+                           ? std::uint8_t{1}
+                           : std::uint8_t{0}});
+  }
+  return sources;
+}
+
+}  // namespace
+
+void take_from_objects(const LitScene& scene, const PatchVisibility& visibility,
+                       std::span<const PlacedObject> objects, const ObjectRadiance& radiance,
+                       std::span<const SourceShadow> shadows, const glm::vec3& eye_world,
+                       const ShadowTakeOptions& options, ObjectTakes& result) {
+  std::size_t meshes = 0;
+  for (const PlacedObject& object : objects) meshes += object.meshes.size();
+  result.resize(shadows.size());
+  for (std::vector<MeshTake>& takes : result) takes.resize(meshes);
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const PlacedObject& object = objects[i];
+    const auto sources = sources_at(scene, visibility, object, shadows, options);
+    const MeshTaker taker(scene, options, sources);
+    std::size_t first_vertex = 0;
+    for (std::size_t p = 0; p < object.meshes.size(); ++p, ++number) {
+      const Mesh& mesh = *object.meshes[p];
+      std::vector<MeshTake*> takes;
+      for (std::vector<MeshTake>& of_shadow : result) takes.push_back(&of_shadow[number]);
+      for (MeshTake* take : takes) take->indices.clear();
+      if (!object.object->receives) continue;
+      const auto light = std::span(radiance[i]).subspan(first_vertex, mesh.positions.size());
+      first_vertex += mesh.positions.size();
+      taker.take(object, p, light, takes);
+      const std::vector<std::uint32_t> seen = seen_triangles(object, mesh, glm::dvec3(eye_world));
+      raster::for_each_chunk(takes.size(), 4, options.threads,
+                             [&](std::size_t first, std::size_t last) {
+                               for (std::size_t j = first; j < last; ++j)
+                                 keep_taken(seen, *takes[j]);
+                             });
+    }
+  }
+}
+
+}  // namespace gnomon::pipeline
