@@ -1,6 +1,7 @@
 #include "ar/composite.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "raster/check.h"
@@ -135,6 +136,56 @@ Image composite(const PinholeView& view, const Image& photograph, const Image& r
                            for (std::size_t y = first; y < last; ++y) {
                              const int row = static_cast<int>(y);
                              view.is_identity() ? take_row(row) : mix_row(row);
+                           }
+                         });
+  return out;
+}
+
+namespace {
+
+template <class Pixel>
+void finish_row(const PinholeView& view, const raster::TiledPlane<Pixel>& drawn,
+                const pipeline::PictureFinish& finish, int y, Image& picture) {
+  for (int x = 0; x < picture.width; ++x) {
+    const glm::vec2 center = view.view_from_photo(x, y);
+    if (std::isnan(center.x)) continue;
+    const Footprint at = footprint(view, center);
+    bool keeps = true;
+    std::array<int, 3> sum{};
+    for (int v = at.v0; v < at.v1; ++v) {
+      for (int u = at.u0; u < at.u1; ++u) {
+        const Pixel& pixel = drawn.at(u, view.height() - 1 - v);
+        const bool kept = finish.keeps(pixel);
+        keeps = keeps && kept;
+        std::array<std::uint8_t, 3> value{};
+        if (kept)
+          std::copy_n(picture.at(x, y), 3, value.begin());
+        else
+          value = finish.pixel(picture.at(x, y), pixel);
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += value[c];
+      }
+    }
+    if (keeps) continue;
+    const int count = at.count();
+    for (std::size_t c = 0; c < 3; ++c)
+      picture.at(x, y)[c] = static_cast<std::uint8_t>((2 * sum[c] + count) / (2 * count));
+  }
+}
+
+}  // namespace
+
+Image composite(const PinholeView& view, const Image& photograph, const raster::ColorBuffer& drawn,
+                const pipeline::PictureFinish& finish, int threads) {
+  raster::require(drawn.width() == view.width() && drawn.height() == view.height(),
+                  "the drawing has the view's size");
+  Image out = photograph;
+  raster::for_each_chunk(static_cast<std::size_t>(out.height), kRows, threads,
+                         [&](std::size_t first, std::size_t last) {
+                           for (std::size_t y = first; y < last; ++y) {
+                             if (drawn.format() == raster::ColorFormat::rgba8)
+                               finish_row(view, drawn.rgba8(), finish, static_cast<int>(y), out);
+                             else
+                               finish_row(view, drawn.rgba32f(), finish, static_cast<int>(y), out);
                            }
                          });
   return out;

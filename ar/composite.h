@@ -6,6 +6,8 @@
 
 #include "ar/image.h"
 #include "ar/pinhole_view.h"
+#include "pipeline/finish_picture.h"
+#include "raster/buffers.h"
 
 namespace gnomon::ar {
 
@@ -18,6 +20,12 @@ namespace gnomon::ar {
 /// Preconditions: they have the view's size, `resampled` is view.resample(photograph).
 Image composite(const PinholeView& view, const Image& photograph, const Image& resampled,
                 const std::vector<std::uint8_t>& drawn_rows, int threads = 0);
+
+/// The same of differential shadows by share: a photograph's pixel is finished with each of the
+/// view pixels that it spans, and the mean taken; the photograph is not resampled. Preconditions:
+/// `drawn` has the view's size, `finish` takes by share.
+Image composite(const PinholeView& view, const Image& photograph, const raster::ColorBuffer& drawn,
+                const pipeline::PictureFinish& finish, int threads = 0);
 
 /// The share of a photograph's pixel, as a square of the view, where a channel of the view's rows
 /// (r, g, b, a from the bottom row) is 255 and not 0; view pixels that the square cuts count by the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "ar/composite.h"
@@ -114,24 +115,28 @@ struct DifferentialAugmenter::Impl {
     raster::execute(frame, {.threads = settings.threads, .memory = &memory, .first_command = done});
   }
 
-  /// The drawn picture in 8 bits, as ColorBuffer::to_rgba8_rows.
-  std::vector<std::uint8_t> picture(const raster::ImageView& photograph) const {
-    return settings.method.take.precision == pipeline::ShadowPrecision::radiance
-               ? pipeline::map_radiance(photograph, color, scene->tone, settings.threads)
-               : color.to_rgba8_rows();
-  }
-
   /// r: a shadow fell there; b: a virtual object is visible; as rows from the bottom.
+  /// `photograph` is only looked at where shadows take no share.
   std::vector<std::uint8_t> masks(const raster::ImageView& photograph,
-                                  std::vector<std::uint8_t> rows) const {
+                                  const pipeline::PictureFinish& finish) const {
+    std::vector<std::uint8_t> rows;
+    rows.reserve(std::size_t{4} * view.width() * view.height());
+    const auto add = [&](bool object, bool kept) {
+      for (const bool set : {!object && !kept, false, object, true}) rows.push_back(set ? 255 : 0);
+    };
+    const auto is_photograph = [&](int x, int y, const auto& drawn) {
+      return std::ranges::equal(finish.pixel(photograph.pixel(x, y), drawn),
+                                std::span(photograph.pixel(x, y), 3));
+    };
+    const auto look = [&](int x, int y, const auto& drawn, bool object) {
+      add(object, settings.method.take.by_share ? finish.keeps(drawn) : is_photograph(x, y, drawn));
+    };
     for (int y = 0; y < view.height(); ++y) {
       for (int x = 0; x < view.width(); ++x) {
-        std::uint8_t* at = &rows[4 * (static_cast<std::size_t>(y) * view.width() + x)];
-        const bool object = at[3] != 0;
-        const bool shadow = !object && !std::equal(at, at + 3, photograph.pixel(x, y));
-        at[0] = shadow ? 255 : 0;
-        at[1] = 0;
-        at[2] = object ? 255 : 0;
+        if (is_wide())
+          look(x, y, color.rgba32f().at(x, y), color.rgba32f().at(x, y).w != 0.0f);
+        else
+          look(x, y, color.rgba8().at(x, y), color.rgba8().at(x, y)[3] != 0);
       }
     }
     return rows;
@@ -155,7 +160,9 @@ Augmented DifferentialAugmenter::augment(const Image& photograph, const pipeline
   Impl& at = *impl_;
   Augmented out;
   Stopwatch watch, whole;
-  const Image resampled = at.view.resample(photograph);
+  // Shares are taken of the photograph's own pixels.
+  const bool by_share = at.settings.method.take.by_share;
+  const Image resampled = by_share ? Image{} : at.view.resample(photograph);
   out.resample_ms = watch.lap_ms();
 
   const pipeline::Camera camera =
@@ -174,11 +181,16 @@ Augmented DifferentialAugmenter::augment(const Image& photograph, const pipeline
   at.execute(frame, out);
   out.execute_ms = watch.lap_ms();
 
-  std::vector<std::uint8_t> drawn = at.picture(picture);
   const int threads = at.settings.threads;
-  out.composite = composite(at.view, photograph, resampled, drawn, threads);
+  const pipeline::PictureFinish finish(at.scene->tone, options.take);
+  out.composite =
+      by_share
+          ? composite(at.view, photograph, at.color, finish, threads)
+          : composite(at.view, photograph, resampled,
+                      pipeline::finish_picture(picture, at.color, at.scene->tone, options.take),
+                      threads);
   if (at.settings.masks) {
-    const std::vector<std::uint8_t> rows = at.masks(picture, std::move(drawn));
+    const std::vector<std::uint8_t> rows = at.masks(picture, finish);
     out.shadow_mask = mask_at_photo(at.view, rows, 0, threads);
     out.shadow_on_virtual = mask_at_photo(at.view, rows, 1, threads);
     out.object_mask = mask_at_photo(at.view, rows, 2, threads);

@@ -31,7 +31,7 @@ DifferentialFile read_differential(const std::filesystem::path& file, const toml
   const TomlTable t(file, table, "[differential]",
                     {"lit_scene", "passes", "budget_ms", "precision", "mask", "map_size",
                      "self_shadows", "occluder_triangles", "power_share", "prune_share",
-                     "drop_pruned", "whole_clusters", "returned_light"});
+                     "drop_pruned", "whole_clusters", "returned_light", "by_share"});
   DifferentialFile out;
   // Absent, the command line names it.
   out.lit_scene = t.file("lit_scene").value_or("");
@@ -45,6 +45,7 @@ DifferentialFile read_differential(const std::filesystem::path& file, const toml
   take.precision = read_precision(t);
   take.whole_clusters = t.boolean("whole_clusters").value_or(take.whole_clusters);
   take.returned_light = t.boolean("returned_light").value_or(take.returned_light);
+  take.by_share = t.boolean("by_share").value_or(take.by_share);
   settings.method.mask = read_mask(t);
   if (t.has("map_size") && settings.method.mask != pipeline::ShadowMask::map)
     t.fail("map_size", "is a shadow map's: give mask = \"map\"");

@@ -152,11 +152,14 @@ void DifferentialMethod::record_surfaces(raster::Frame& frame, const Camera& cam
                                          const raster::ImageView& photograph,
                                          const raster::Targets& targets,
                                          const DifferentialOptions& options) {
-  frame.begin_pass(differential_label::kBackground, targets);
-  raster::Clear clear{.color = glm::vec4(0.0f), .depth = 1.0f};
+  const bool radiance = options.take.precision == ShadowPrecision::radiance;
+  const bool white = options.take.by_share && !radiance;
+  frame.begin_pass(white ? differential_label::kWhite : differential_label::kBackground, targets);
+  raster::Clear clear{.color = white ? glm::vec4(1.0f, 1.0f, 1.0f, 0.0f) : glm::vec4(0.0f),
+                      .depth = 1.0f};
   if (targets.stencil) clear.stencil = 0;
   frame.clear(clear);
-  if (options.take.precision != ShadowPrecision::radiance) frame.blit({.image = photograph});
+  if (!white && !radiance) frame.blit({.image = photograph});
   frame.begin_pass(differential_label::kModel, targets);
   raster::State state = surface_state();
   state.depth = raster::DepthState{};
@@ -266,38 +269,6 @@ void DifferentialMethod::color_objects(const ObjectRadiance& radiance,
       }
     }
   }
-}
-
-std::vector<std::uint8_t> map_radiance(const raster::ImageView& photograph,
-                                       const raster::ColorBuffer& light, const ToneCurve& tone,
-                                       int threads) {
-  raster::require(light.width() == photograph.width && light.height() == photograph.height,
-                  "light and photograph have one size");
-  const raster::TiledPlane<glm::vec4>& plane = light.rgba32f();
-  const auto width = static_cast<std::size_t>(light.width());
-  std::vector<std::uint8_t> rows(4 * width * static_cast<std::size_t>(light.height()));
-  raster::for_each_chunk(
-      static_cast<std::size_t>(light.height()), 16, threads,
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t y = first; y < last; ++y) {
-          for (std::size_t x = 0; x < width; ++x) {
-            const glm::vec4 at = plane.at(static_cast<int>(x), static_cast<int>(y));
-            const std::uint8_t* photo = photograph.pixel(static_cast<int>(x), static_cast<int>(y));
-            std::uint8_t* out = &rows[4 * (y * width + x)];
-            for (std::size_t c = 0; c < 3; ++c) {
-              const double part = static_cast<double>(at[static_cast<int>(c)]);
-              if (at.w == 0.0f && part == 0.0) {
-                out[c] = photo[c];
-                continue;
-              }
-              const double radiance = at.w == 0.0f ? tone.radiance(c, photo[c]) + part : part;
-              out[c] = static_cast<std::uint8_t>(std::lround(tone.value(c, radiance)));
-            }
-            out[3] = at.w == 0.0f ? 0 : 255;
-          }
-        }
-      });
-  return rows;
 }
 
 }  // namespace gnomon::pipeline

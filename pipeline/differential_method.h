@@ -43,6 +43,7 @@ struct DifferentialOptions {
 
 namespace differential_label {
 inline constexpr const char* kBackground = "background image";
+inline constexpr const char* kWhite = "white, which shares are taken of";
 inline constexpr const char* kModel = "scene model into the depth buffer";
 inline constexpr const char* kObjects = "synthetic objects";
 inline constexpr const char* kMap = "shadow map: source ";
@@ -58,12 +59,16 @@ class DifferentialMethod {
 
   /// Records one frame. Objects of `virtual_scene` are virtual; its lights are not used.
   /// Targets have the photograph's size: colour (RGBA8 for bytes and dithered, RGBA32F otherwise),
-  /// depth, and stencil for volumes. After execution colour is
-  /// - bytes, dithered, values: the augmented photograph, values over 255;
-  /// - radiance: of a virtual object its radiance, elsewhere what shadows take (0 or less);
+  /// depth, and stencil for volumes. After execution colour is what PictureFinish takes: of a
+  /// visible virtual object its value over 255, or radiance; elsewhere
+  /// - bytes, dithered, values: what is left of the photograph's value, as a share of it, or (not
+  /// by
+  ///   share) that value over 255;
+  /// - radiance: what shadows take (0 or less), a share of the photograph's or radiance;
   /// alpha is 1 where a virtual object is visible and 0 elsewhere.
   /// The frame borrows from this object: it is good until the next one is recorded.
-  /// Precondition: photograph and targets outlive the execution.
+  /// Preconditions: photograph and targets outlive the execution; the photograph is only looked at
+  /// where values are not taken by share, and has the targets' size there.
   raster::Frame record(const Scene& virtual_scene, const Camera& camera,
                        const raster::ImageView& photograph, const raster::Targets& targets,
                        const DifferentialOptions& options);
@@ -105,13 +110,5 @@ class DifferentialMethod {
   /// Empty without self-shadows.
   ObjectTakes taken_;
 };
-
-/// The picture of ShadowPrecision::radiance: T of an object's radiance, T of the photograph's
-/// radiance plus what was taken (both at least 0), rounded to nearest; a pixel without either keeps
-/// its bytes. Rows r, g, b, a from the bottom row, a as in `light`.
-/// Precondition: `light` is RGBA32F and of the photograph's size.
-std::vector<std::uint8_t> map_radiance(const raster::ImageView& photograph,
-                                       const raster::ColorBuffer& light, const ToneCurve& tone,
-                                       int threads = 0);
 
 }  // namespace gnomon::pipeline

@@ -56,7 +56,8 @@ struct DifferentialReference::World {
   const LitScene& scene;
   PatchVisibility patches;
   RayReference objects;
-  std::vector<glm::vec3> reflectance;
+  /// Of vertices.
+  std::vector<glm::vec3> reflectance, radiance;
   std::vector<Sphere> patch_spheres, casters;
   /// One an object: its first part's.
   std::vector<glm::dvec3> diffuse;
@@ -67,6 +68,7 @@ struct DifferentialReference::World {
         patches(lit.model),
         objects(virtual_objects),
         reflectance(at_vertices(lit.model, lit.reflectance)),
+        radiance(at_vertices(lit.model, lit.radiance)),
         virtual_scene(virtual_objects) {
     for (const Patch& patch : lit.model.patches) {
       Sphere sphere{patch.center, 0.0};
@@ -198,19 +200,26 @@ ReferencePicture DifferentialReference::render(std::span<const Ray> rays,
     }
     if (patch_hit.patch == PatchVisibility::kNone || !patch_hit.front) return;
     const Patch& patch = world.scene.model.patches[patch_hit.patch];
-    glm::dvec3 point(0.0), reflectance(0.0);
+    glm::dvec3 point(0.0), reflectance(0.0), whole(0.0);
     for (std::size_t k = 0; k < 3; ++k) {
       const double weight = patch_hit.weights[static_cast<int>(k)];
       point += world.scene.model.corner(patch, k) * weight;
       reflectance += glm::dvec3(world.reflectance[patch.vertices[k]]) * weight;
+      whole += glm::dvec3(world.radiance[patch.vertices[k]]) * weight;
     }
     const glm::dvec3 taken = reflectance * world.hidden(point, patch.normal, options.samples, glow);
     if (taken == glm::dvec3(0.0)) return;
     picture.shadow[i] = 1;
     glm::dvec3 light(0.0);
-    for (std::size_t c = 0; c < 3; ++c)
-      light[static_cast<int>(c)] = tone.radiance(c, photograph[3 * i + c]);
-    set(i, glm::max(light - taken, glm::dvec3(0.0)));
+    for (int c = 0; c < 3; ++c) {
+      light[c] = tone.radiance(static_cast<std::size_t>(c),
+                               photograph[3 * i + static_cast<std::size_t>(c)]);
+      if (!options.by_share)
+        light[c] -= taken[c];
+      else if (whole[c] > 0.0)
+        light[c] *= 1.0 - taken[c] / whole[c];
+    }
+    set(i, glm::max(light, glm::dvec3(0.0)));
   };
   raster::for_each_chunk(rays.size(), 64, options.threads,
                          [&](std::size_t first, std::size_t last) {

@@ -25,6 +25,8 @@ struct ReferenceOptions {
   /// Where an object hides a patch, the light that its own surface sends the same way is given
   /// back; without it the room sees black objects.
   bool returned_light = true;
+  /// As ShadowTakeOptions.
+  bool by_share = true;
   int threads = 0;
 };
 

@@ -162,16 +162,27 @@ class Takes {
         transfers[j] = given(j, vertex);
         shadows_[j].given[i] = transfers[j] == glm::vec3(0.0f) ? 0 : 1;
       }
+      const glm::dvec3 light(paths_.vertex_radiance[vertex]);
       if (options_.precision != ShadowPrecision::radiance) {
-        intensity_transfers(scene_.tone, paths_.vertex_radiance[vertex], transfers, first_set_,
-                            values);
+        intensity_transfers(scene_.tone, light, transfers, first_set_, values);
+        const glm::vec3 whole =
+            options_.by_share ? inverse(scene_.tone.value(light)) : glm::vec3(1.0f / 255.0f);
         for (std::size_t j = 0; j < shadows_.size(); ++j)
-          shadows_[j].colors[i] = rounded(values[j], j);
+          shadows_[j].colors[i] = glm::vec4((values[j] + dither(j)) * whole, 0.0f);
       } else {
+        const glm::vec3 whole = options_.by_share ? inverse(light) : glm::vec3(1.0f);
         for (std::size_t j = 0; j < shadows_.size(); ++j)
-          shadows_[j].colors[i] = glm::vec4(transfers[j], 0.0f);
+          shadows_[j].colors[i] = glm::vec4(transfers[j] * whole, 0.0f);
       }
     }
+  }
+
+  /// 0 where there is nothing to take a share of.
+  static glm::vec3 inverse(const glm::dvec3& whole) {
+    glm::vec3 result(0.0f);
+    for (int c = 0; c < 3; ++c)
+      if (whole[c] > 0.0) result[c] = static_cast<float>(1.0 / whole[c]);
+    return result;
   }
 
   /// One source's row of the transfers, and the share of it that an object in the way takes.
@@ -194,13 +205,13 @@ class Takes {
     return sum;
   }
 
-  glm::vec4 rounded(const glm::vec3& value, std::size_t j) const {
-    if (options_.precision != ShadowPrecision::dithered) return {value / 255.0f, 0.0f};
+  /// In values. Also at a vertex that nothing is taken from: values are interpolated, and then
+  /// rounded.
+  float dither(std::size_t j) const {
+    if (options_.precision != ShadowPrecision::dithered) return 0.0f;
     // The golden ratio's multiples are even over [0, 1) however many there are.
     const double turn = static_cast<double>(j + 1) * 0.6180339887498949;
-    const auto offset = static_cast<float>(turn - std::floor(turn) - 0.5);
-    // Also at a vertex that nothing is taken from: values are interpolated, and then rounded.
-    return {(value + offset) / 255.0f, 0.0f};
+    return static_cast<float>(turn - std::floor(turn) - 0.5);
   }
 
   const LitScene& scene_;

@@ -121,7 +121,8 @@ TEST_F(DifferentialSession, HoldsABudgetFrameAfterFrame) {
 
 TEST_F(DifferentialSession, NamesEachPassAsThePaperDoes) {
   const SessionResult result =
-      run(scene("[differential]\nlit_scene = \"room.lit\"\npasses = 3\nmask = \"volumes\"\n"),
+      run(scene("[differential]\nlit_scene = \"room.lit\"\npasses = 3\nmask = \"volumes\"\n"
+                "by_share = false\n"),
           {.steps = true});
   std::vector<std::string> labels;
   for (const PassNote& pass : result.augmented->passes) labels.push_back(pass.label);

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "ar/image_file.h"
 #include "ar/lit_scene_file.h"
@@ -41,8 +41,8 @@ TEST_F(SoftRoom, TagsPlaceTheCameraAsItsKnownPoseDoes) {
   const SessionResult known = run("suzanne.toml", {.still = true}),
                       tracked = run("suzanne_tags.toml", {.passes = 50});
   ASSERT_TRUE(known.augmented && tracked.augmented);
-  const glm::dvec3 apart = glm::dvec3((*known.world_from_camera)[3]) -
-                           glm::dvec3((*tracked.world_from_camera)[3]);
+  const glm::dvec3 apart =
+      glm::dvec3((*known.world_from_camera)[3]) - glm::dvec3((*tracked.world_from_camera)[3]);
   // Three tags at 2 to 4 m, corners found to a few hundredths of a pixel.
   EXPECT_LT(glm::length(apart), 0.02);
   EXPECT_GT(*mask_iou(known.augmented->object_mask, tracked.augmented->object_mask), 0.97);

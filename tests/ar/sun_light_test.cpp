@@ -29,8 +29,7 @@ struct Room {
 TEST(SunLight, IsFoundFromWhatItLightsBesideWhatItDoesNot) {
   for (const float irradiance : {2.0f, 40.0f}) {
     // So many bounces that what is left out is a thousandth.
-    const auto found =
-        Room({.patches = 600, .bounces = 11, .sun_irradiance = irradiance}).find();
+    const auto found = Room({.patches = 600, .bounces = 11, .sun_irradiance = irradiance}).find();
     ASSERT_TRUE(found);
     // The room is made with a ray a pair of patches, looked at with four.
     for (int c = 0; c < 3; ++c) EXPECT_NEAR((*found)[c] / irradiance, 1.0, 0.05) << irradiance;

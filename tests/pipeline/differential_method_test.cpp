@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/differential_reference.h"
+#include "pipeline/finish_picture.h"
 #include "raster/execute.h"
 #include "raster/isa.h"
 #include "tests/pipeline/lit_room.h"
@@ -75,9 +76,7 @@ std::vector<std::uint8_t> draw(DifferentialMethod& method, const Setting& settin
   const raster::Frame frame =
       method.record(objects, setting.camera, photograph, picture.targets(), options);
   raster::execute(frame, {.threads = threads, .isa = isa});
-  return precision == ShadowPrecision::radiance
-             ? map_radiance(photograph, picture.color, setting.scene.tone, threads)
-             : picture.color.to_rgba8_rows();
+  return finish_picture(photograph, picture.color, setting.scene.tone, options.take);
 }
 
 std::vector<std::uint8_t> draw(const Setting& setting, const Scene& objects,
@@ -256,9 +255,10 @@ TEST(Differential, BytesLoseFaintShadowsAndDitherKeepsThemOnAverage) {
     DifferentialMethod method(setting.scene, setting.paths);
     Picture picture(precision == ShadowPrecision::values ? raster::ColorFormat::rgba32f
                                                          : raster::ColorFormat::rgba8);
-    raster::execute(
-        method.record(ball, setting.camera, setting.photograph(), picture.targets(),
-                      {.take = {.passes = 500, .precision = precision, .returned_light = false}}));
+    raster::execute(method.record(
+        ball, setting.camera, setting.photograph(), picture.targets(),
+        {.take = {
+             .passes = 500, .precision = precision, .by_share = false, .returned_light = false}}));
     double sum = 0.0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {

@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "pipeline/irradiance_volume.h"
 #include "pipeline/patch_light.h"
@@ -25,8 +25,8 @@ TEST(Sun, GivesWhatAParallelLightGives) {
   const glm::dvec3 up(0.0, 1.0, 0.0);
   for (const glm::dvec3& point : {glm::dvec3(1.0, 0.0, 1.0), glm::dvec3(-1.5, 0.0, 1.2)}) {
     const double factor = form_factor(point, up, scene.model.corners(sun));
-    const double got = std::numbers::pi * factor *
-                       static_cast<double>(scene.radiance[sun_patch(scene.model)].x);
+    const double got =
+        std::numbers::pi * factor * static_cast<double>(scene.radiance[sun_patch(scene.model)].x);
     // The patch is 200 diagonals away: a point a part of one nearer gets 1 % more, at most.
     EXPECT_NEAR(got / (20.0 * kDirection.y), 1.0, 0.01);
     EXPECT_EQ(visibility.visible_share(sun, point, up, 16), 1.0);
@@ -56,8 +56,7 @@ TEST(Sun, IsTheFirstSourceAndTakesNoneOfTheOthersPlace) {
   ASSERT_FALSE(sources.empty());
   EXPECT_EQ(sources.front(), sun_patch(scene.model));
   // The same lamps and walls, the sun beside them.
-  for (std::size_t i = 0; i < without.radiance.size(); ++i)
-    scene.radiance[i] = without.radiance[i];
+  for (std::size_t i = 0; i < without.radiance.size(); ++i) scene.radiance[i] = without.radiance[i];
   const auto with_sun = find_sources(scene, 0.7), others = find_sources(without, 0.7);
   EXPECT_EQ(std::vector(with_sun.begin() + 1, with_sun.end()), others);
 }

@@ -50,8 +50,8 @@ std::vector<pipeline::Ray> photo_rays(const TruthSet& set) {
     for (int x = 0; x < set.background.width; ++x) {
       const auto at = lens.undistort({x, y});
       const glm::dvec3 direction(at.value_or(glm::dvec2(0.0)), 1.0);
-      rays.push_back({glm::dvec3(set.world_from_camera[3]),
-                      glm::dmat3(set.world_from_camera) * direction});
+      rays.push_back(
+          {glm::dvec3(set.world_from_camera[3]), glm::dmat3(set.world_from_camera) * direction});
     }
   }
   return rays;

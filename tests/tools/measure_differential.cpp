@@ -61,8 +61,9 @@ std::vector<Setting> settings() {
   add(50, " whole clusters").method.take.whole_clusters = true;
   add(50, " pruned shafts dropped").light.drop_pruned = true;
   add(50, " black objects").method.take.returned_light = false;
+  add(50, " one amount").method.take.by_share = false;
   DifferentialSettings& paper = add(50, " as in the paper");
-  paper.method.take.returned_light = false;
+  paper.method.take.returned_light = paper.method.take.by_share = false;
   paper.method.take.whole_clusters = true;
   paper.light.drop_pruned = true;
   DifferentialSettings& most = add(kAll, " of all power, radiance");
