@@ -147,6 +147,14 @@ template <class Pixel>
 void finish_row(const PinholeView& view, const raster::TiledPlane<Pixel>& drawn,
                 const pipeline::PictureFinish& finish, int y, Image& picture) {
   for (int x = 0; x < picture.width; ++x) {
+    if (view.samples() == 1) {
+      const auto [u, v] = view.nearest(x, y);
+      if (u < 0) continue;
+      const Pixel& pixel = drawn.at(u, v);
+      if (!finish.keeps(pixel))
+        std::ranges::copy(finish.pixel(picture.at(x, y), pixel), picture.at(x, y));
+      continue;
+    }
     const glm::vec2 center = view.view_from_photo(x, y);
     if (std::isnan(center.x)) continue;
     const Footprint at = footprint(view, center);

@@ -19,7 +19,7 @@ pipeline::ShadowPrecision read_precision(const TomlTable& t) {
 }
 
 pipeline::ShadowMask read_mask(const TomlTable& t) {
-  const std::string name = t.text("mask").value_or("map");
+  const std::string name = t.text("mask").value_or("volumes");
   if (name == "map") return pipeline::ShadowMask::map;
   if (name == "volumes") return pipeline::ShadowMask::volumes;
   t.fail("mask", fmt::format("'{}' is not one of map, volumes", name));
@@ -48,7 +48,7 @@ DifferentialFile read_differential(const std::filesystem::path& file, const toml
   take.by_share = t.boolean("by_share").value_or(take.by_share);
   settings.method.mask = read_mask(t);
   if (t.has("map_size") && settings.method.mask != pipeline::ShadowMask::map)
-    t.fail("map_size", "is a shadow map's: give mask = \"map\"");
+    t.fail("map_size", "is a shadow map's: give mask = \"map\" too");
   settings.method.map_size = t.integer("map_size", 8, 4096).value_or(settings.method.map_size);
   settings.method.self_shadows = t.boolean("self_shadows").value_or(settings.method.self_shadows);
   if (const auto triangles = t.integer("occluder_triangles", 0, 100'000'000))

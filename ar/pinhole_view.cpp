@@ -94,6 +94,15 @@ void PinholeView::build_maps(const Lens& lens) {
             p.x >= -1.0 && p.y >= -1.0 && p.x <= width_ && p.y <= height_)
           at = glm::vec2(p);
     }
+  nearest_.assign(view_from_photo_.size(), {-1, -1});
+  for (std::size_t i = 0; i < nearest_.size(); ++i) {
+    const glm::vec2 at = view_from_photo_[i];
+    if (std::isnan(at.x)) continue;
+    const int u = static_cast<int>(std::floor(at.x + 0.5f)),
+              v = static_cast<int>(std::floor(at.y + 0.5f));
+    if (u >= 0 && v >= 0 && u < width_ && v < height_)
+      nearest_[i] = {static_cast<std::int16_t>(u), static_cast<std::int16_t>(height_ - 1 - v)};
+  }
   if (identity_) return;
   const CameraModel& camera = lens.camera();
   photo_x_.resize(static_cast<std::size_t>(width_) * height_);

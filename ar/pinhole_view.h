@@ -5,6 +5,8 @@
 // its own geometry; it is resampled only to be seen under the drawing.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -44,6 +46,13 @@ class PinholeView {
     return view_from_photo_[static_cast<std::size_t>(y) * photo_width_ + x];
   }
 
+  /// The view's pixel nearest to that, columns from the left and rows from the bottom as in
+  /// buffers;
+  /// (-1, -1) where there is none.
+  std::array<std::int16_t, 2> nearest(int x, int y) const {
+    return nearest_[static_cast<std::size_t>(y) * photo_width_ + x];
+  }
+
   /// The photograph as the pinhole camera sees it (bilinear; its border goes on outside). Three
   /// channels in, three out.
   Image resample(const Image& photograph) const;
@@ -56,6 +65,7 @@ class PinholeView {
   /// view pixel = focal * normalised + center.
   glm::dvec2 focal_{1.0}, center_{0.0};
   std::vector<glm::vec2> view_from_photo_;
+  std::vector<std::array<std::int16_t, 2>> nearest_;
   /// The photograph's pixel at each view pixel, as x and y planes.
   std::vector<float> photo_x_, photo_y_;
 };

@@ -134,7 +134,7 @@ raster::Frame DifferentialMethod::record(const Scene& virtual_scene, const Camer
     take_from_objects(scene_, visibility_, placed_, radiance, shadows_.shadows, camera.eye_world,
                       options.take, taken_);
   else
-    taken_.clear();
+    taken_.of_shadow.clear();
 
   raster::Frame frame;
   record_surfaces(frame, camera, photograph, targets, options);
@@ -203,10 +203,15 @@ void DifferentialMethod::count(raster::Frame& frame, std::size_t number, const C
   const SourceShadow& shadow = shadows_.shadows[number];
   frame.begin_pass(numbered(differential_label::kVolumes, number), targets);
   Window seen(camera);
-  for (const std::uint32_t i : shadow.indices) seen.add(glm::dvec3(shadows_.positions[i]));
-  for (const PlacedObject& object : placed_) {
-    if (!options.self_shadows || !object.object->receives) continue;
-    for (const glm::dvec3& corner : corners_of(*object.topology, *object.object)) seen.add(corner);
+  for (const glm::dvec3& corner : shadow.reach) seen.add(corner);
+  std::size_t mesh = 0;
+  for (std::size_t i = 0; i < placed_.size() && options.self_shadows; ++i) {
+    bool takes = false;
+    for (std::size_t p = 0; p < placed_[i].meshes.size(); ++p, ++mesh)
+      takes = takes || taken_.of_shadow[number][mesh].any;
+    if (!takes) continue;
+    for (const glm::dvec3& corner : corners_of(*placed_[i].topology, *placed_[i].object))
+      seen.add(corner);
   }
   const raster::Rect window = seen.rect();
   if (window.width == 0 || window.height == 0) return;
@@ -229,22 +234,28 @@ void DifferentialMethod::subtract(raster::Frame& frame, std::size_t number, cons
   raster::State state = drawn_again();
   if (!map) state.stencil = raster::StencilState::both({.func = raster::CompareFunc::not_equal});
   if (!shadow.indices.empty()) {
-    frame.draw({.state = state,
+    Window reached(camera);
+    for (const glm::dvec3& corner : shadow.reach) reached.add(corner);
+    raster::State cut = state;
+    cut.scissor = reached.rect();
+    frame.draw({.state = cut,
                 .mesh = {shadows_.positions, shadow.indices, {}, shadow.colors, {}},
                 .clip_from_model = camera.clip_from_world,
                 .shading = raster::Flat{.depth_lookup = map},
                 .label = "receivers"});
   }
-  auto take = taken_.empty() ? std::vector<MeshTake>::const_iterator() : taken_[number].begin();
-  for (std::size_t i = 0; i < placed_.size() && !taken_.empty(); ++i) {
+  if (taken_.of_shadow.empty()) return;
+  std::size_t number_of_mesh = 0;
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
     std::optional<raster::DepthLookup> lookup = map;
     if (lookup) lookup->map_from_position *= placed_[i].object->world_from_model;
     state.front_face = placed_[i].front_face;
     for (const auto& mesh : placed_[i].meshes) {
-      const MeshTake& from = *take++;
-      if (from.indices.empty()) continue;
+      const std::vector<std::uint32_t>& indices = taken_.indices[number_of_mesh];
+      const MeshTake& take = taken_.of_shadow[number][number_of_mesh++];
+      if (!take.any) continue;
       frame.draw({.state = state,
-                  .mesh = {mesh->positions, from.indices, {}, from.colors, {}},
+                  .mesh = {mesh->positions, indices, {}, take.colors, {}},
                   .clip_from_model = placed_[i].clip_from_model,
                   .shading = raster::Flat{.depth_lookup = lookup},
                   .label = placed_[i].object->name});

@@ -29,13 +29,14 @@ namespace gnomon::pipeline {
 enum class ShadowMask : std::uint8_t {
   /// A depth map of the casters, looked up with one comparison (the paper).
   map,
-  /// The casters' shadow volume, counted in the stencil buffer: no texel, no offset.
+  /// The casters' shadow volume, counted in the stencil buffer: no texel, no offset, and of the two
+  /// the faster one (docs/gibson.md).
   volumes
 };
 
 struct DifferentialOptions {
   ShadowTakeOptions take;
-  ShadowMask mask = ShadowMask::map;
+  ShadowMask mask = ShadowMask::volumes;
   int map_size = 256;
   /// Shadows of virtual objects on virtual objects.
   bool self_shadows = true;

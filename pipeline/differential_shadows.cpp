@@ -1,9 +1,11 @@
 #include "pipeline/differential_shadows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "pipeline/intensity_transfer.h"
@@ -224,26 +226,77 @@ class Takes {
   std::vector<std::uint8_t> first_set_;
 };
 
-/// Keeps the triangles that the pyramid behind the casters' nearest point can touch, of those that
-/// something is taken from.
+/// What lies in the pyramid of a shadow's casters, behind the nearest of them.
+class Pyramid {
+ public:
+  explicit Pyramid(const SourceShadow& shadow) : casters_(shadow.casters), near_m_(shadow.near_m) {}
+
+  /// How far inside of each side a point of the light's view is; below 0: outside.
+  std::array<double, 5> depths(const glm::dvec3& p) const {
+    return {p.x - casters_.low.x * p.z, casters_.high.x * p.z - p.x, p.y - casters_.low.y * p.z,
+            casters_.high.y * p.z - p.y, p.z - near_m_};
+  }
+
+  /// Corners of the part of a triangle that is inside; of its own corners' places in the world.
+  void add_inside(const std::array<glm::dvec3, 3>& local, const std::array<glm::dvec3, 3>& world,
+                  std::vector<glm::dvec3>& corners) const {
+    // At most one more corner a side.
+    struct Corner {
+      glm::dvec3 world;
+      std::array<double, 5> depths;
+    };
+    std::array<Corner, 8> polygon, next;
+    std::size_t count = 3;
+    for (std::size_t k = 0; k < 3; ++k) polygon[k] = {world[k], depths(local[k])};
+    for (std::size_t side = 0; side < 5 && count > 0; ++side) {
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const Corner &a = polygon[k], &b = polygon[(k + 1) % count];
+        const double da = a.depths[side], db = b.depths[side];
+        if (da >= 0.0) next[kept++] = a;
+        if ((da >= 0.0) == (db >= 0.0)) continue;
+        Corner& cut = next[kept++];
+        const double t = da / (da - db);
+        cut.world = glm::mix(a.world, b.world, t);
+        for (std::size_t s = 0; s < 5; ++s)
+          cut.depths[s] = a.depths[s] + (b.depths[s] - a.depths[s]) * t;
+      }
+      std::swap(polygon, next);
+      count = kept;
+    }
+    for (std::size_t k = 0; k < count; ++k) corners.push_back(polygon[k].world);
+  }
+
+ private:
+  Rectangle casters_;
+  double near_m_;
+};
+
+/// Keeps the triangles that the pyramid can touch, of those that something is taken from.
 void keep_reached(const Receivers& receivers, std::span<const glm::vec4> positions,
                   SourceShadow& shadow) {
+  const Pyramid pyramid(shadow);
+  std::vector<glm::dvec3> local(positions.size());
   std::vector<std::uint8_t> outside(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const glm::dvec3 p = shadow.view.local(glm::dvec3(positions[i]));
-    const auto bit = [](bool out, int place) {
-      return static_cast<unsigned>(out ? 1 << place : 0);
-    };
-    outside[i] = static_cast<std::uint8_t>(
-        bit(p.x < shadow.casters.low.x * p.z, 0) | bit(p.x > shadow.casters.high.x * p.z, 1) |
-        bit(p.y < shadow.casters.low.y * p.z, 2) | bit(p.y > shadow.casters.high.y * p.z, 3) |
-        bit(p.z < shadow.near_m, 4) | bit(shadow.given[i] == 0, 5));
+    local[i] = shadow.view.local(glm::dvec3(positions[i]));
+    const std::array<double, 5> depths = pyramid.depths(local[i]);
+    unsigned bits = shadow.given[i] == 0 ? 1u << depths.size() : 0u;
+    for (std::size_t side = 0; side < depths.size(); ++side)
+      bits |= depths[side] < 0.0 ? 1u << side : 0u;
+    outside[i] = static_cast<std::uint8_t>(bits);
   }
   shadow.indices.clear();
+  shadow.reach.clear();
   for (std::size_t t = 0; t < receivers.indices.size(); t += 3) {
     const std::uint32_t* i = &receivers.indices[t];
-    if ((outside[i[0]] & outside[i[1]] & outside[i[2]]) == 0)
-      shadow.indices.insert(shadow.indices.end(), i, i + 3);
+    if ((outside[i[0]] & outside[i[1]] & outside[i[2]]) != 0) continue;
+    const std::size_t before = shadow.reach.size();
+    pyramid.add_inside(
+        {local[i[0]], local[i[1]], local[i[2]]},
+        {glm::dvec3(positions[i[0]]), glm::dvec3(positions[i[1]]), glm::dvec3(positions[i[2]])},
+        shadow.reach);
+    if (shadow.reach.size() > before) shadow.indices.insert(shadow.indices.end(), i, i + 3);
   }
 }
 

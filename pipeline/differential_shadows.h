@@ -65,8 +65,10 @@ struct SourceShadow {
   double near_m = 0.0, far_m = 0.0;
   /// Light of the cluster's sources as one at its point: radiance times area (W / sr).
   glm::vec3 intensity{0.0f};
-  /// Of DifferentialShadows::positions: triangles that the shadow can reach.
+  /// Of DifferentialShadows::positions: triangles that the shadow can reach; and corners, in the
+  /// world, that all it can reach of them lies between.
   std::vector<std::uint32_t> indices;
+  std::vector<glm::dvec3> reach;
   /// One a position: what is subtracted, values over 255 (with a dither's offset, so perhaps below
   /// 0) or radiance; by share, that over the value or radiance of the position; w is 0.
   std::vector<glm::vec4> colors;

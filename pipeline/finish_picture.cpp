@@ -62,19 +62,19 @@ std::vector<std::uint8_t> finish_picture(const raster::ImageView& photograph,
     }
   };
   constexpr std::size_t kRows = 16;
-  raster::for_each_chunk(
-      static_cast<std::size_t>(drawn.height()), kRows, options.threads,
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t y = first; y < last; ++y) {
-          if (drawn.format() == raster::ColorFormat::rgba8)
-            finish_row(static_cast<int>(y), drawn.rgba8(),
-                       [](const raster::Rgba8& at) { return at[3]; });
-          else
-            finish_row(static_cast<int>(y), drawn.rgba32f(), [](const glm::vec4& at) {
-              return at.w != 0.0f ? std::uint8_t{255} : std::uint8_t{0};
-            });
-        }
-      });
+  raster::for_each_chunk(static_cast<std::size_t>(drawn.height()), kRows, options.threads,
+                         [&](std::size_t first, std::size_t last) {
+                           for (std::size_t y = first; y < last; ++y) {
+                             if (drawn.format() == raster::ColorFormat::rgba8)
+                               finish_row(static_cast<int>(y), drawn.rgba8(),
+                                          [](const raster::Rgba8& at) { return at[3]; });
+                             else
+                               finish_row(
+                                   static_cast<int>(y), drawn.rgba32f(), [](const glm::vec4& at) {
+                                     return at.w != 0.0f ? std::uint8_t{255} : std::uint8_t{0};
+                                   });
+                           }
+                         });
   return rows;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -34,7 +35,7 @@ class PictureFinish {
 
   /// There is no object and nothing was taken by share: the photograph keeps its value.
   bool keeps(const raster::Rgba8& drawn) const {
-    return by_share_ && drawn == raster::Rgba8{255, 255, 255, 0};
+    return by_share_ && std::bit_cast<std::uint32_t>(drawn) == kWhite;
   }
   bool keeps(const glm::vec4& drawn) const {
     const float whole = radiance_ ? 0.0f : 1.0f;
@@ -42,6 +43,8 @@ class PictureFinish {
   }
 
  private:
+  static constexpr std::uint32_t kWhite =
+      std::bit_cast<std::uint32_t>(raster::Rgba8{255, 255, 255, 0});
   const ToneCurve& tone_;
   bool radiance_, by_share_;
 };

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "pipeline/displaced_caster.h"
 #include "pipeline/intensity_transfer.h"
 #include "raster/executor.h"
 
@@ -14,6 +15,9 @@ namespace {
 /// A triangle that is turned from the eye by less than this counts as seen: coordinates are rounded
 /// before the rasterizer decides.
 constexpr double kLeastCosine = -1e-3;
+/// Of a caster's size: corners that are no farther before a triangle's plane lie in it, but for the
+/// rounding of their coordinates.
+constexpr double kFlat = 1e-5;
 
 /// A shadow's light as it falls on one object.
 struct PointSource {
@@ -23,32 +27,64 @@ struct PointSource {
   std::uint8_t first_set;
 };
 
-/// The mesh's triangles that may be seen from the eye: of a closed one those that face it.
-std::vector<std::uint32_t> seen_triangles(const PlacedObject& object, const Mesh& mesh,
-                                          const glm::dvec3& eye) {
+/// A caster's corners in the world, and how far before a plane they count.
+struct CasterPoints {
+  std::vector<glm::dvec3> points;
+  double least = 0.0;
+};
+
+CasterPoints points_of(const PlacedObject& object) {
+  const glm::dmat4 world(object.object->world_from_model);
+  CasterPoints caster;
+  for (const glm::vec4& p : object.caster_topology->positions)
+    caster.points.emplace_back(world * glm::dvec4(p));
+  const double scale =
+      std::max({glm::length(world[0]), glm::length(world[1]), glm::length(world[2])});
+  const double size = scale * static_cast<double>(glm::length(glm::vec3(
+                                  object.caster_topology->high - object.caster_topology->low)));
+  caster.least = kFlat * size;
+  if (is_displaced(*object.object))
+    caster.least += scale * static_cast<double>(object.object->shadow_displace);
+  return caster;
+}
+
+bool any_before(const glm::dvec3& corner, const glm::dvec3& normal,
+                std::span<const CasterPoints> casters) {
+  return std::ranges::any_of(casters, [&](const CasterPoints& caster) {
+    const double from = glm::dot(normal, corner) + caster.least;
+    return std::ranges::any_of(caster.points,
+                               [&](const glm::dvec3& p) { return glm::dot(normal, p) > from; });
+  });
+}
+
+/// The mesh's triangles that may be seen from the eye (of a closed one those that face it) and may
+/// be in a shadow: on either side, where either is seen.
+std::vector<std::uint32_t> shadowed_triangles(const PlacedObject& object, const Mesh& mesh,
+                                              const glm::dvec3& eye,
+                                              std::span<const CasterPoints> casters, int threads) {
   if (!object.topology->faults.closed_manifold()) return mesh.indices;
   const glm::dmat4 world(object.object->world_from_model);
   std::vector<glm::dvec3> positions;
   positions.reserve(mesh.positions.size());
   for (const glm::vec4& p : mesh.positions) positions.emplace_back(world * glm::dvec4(p));
   const double side = object.front_face == raster::FrontFace::ccw ? 1.0 : -1.0;
-  std::vector<std::uint32_t> seen;
-  for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-    const std::uint32_t* i = &mesh.indices[t];
-    const glm::dvec3 &a = positions[i[0]], &b = positions[i[1]], &c = positions[i[2]];
-    const glm::dvec3 normal = glm::cross(b - a, c - a) * side, to = eye - a;
-    if (glm::dot(normal, to) > kLeastCosine * glm::length(normal) * glm::length(to))
-      seen.insert(seen.end(), i, i + 3);
-  }
-  return seen;
-}
-
-void keep_taken(std::span<const std::uint32_t> seen, MeshTake& take) {
-  const auto is_nothing = [&](std::uint32_t v) { return take.colors[v] == glm::vec4(0.0f); };
-  for (std::size_t t = 0; t < seen.size(); t += 3) {
-    const std::uint32_t* i = &seen[t];
-    if (!std::all_of(i, i + 3, is_nothing)) take.indices.insert(take.indices.end(), i, i + 3);
-  }
+  const std::size_t count = mesh.indices.size() / 3;
+  std::vector<std::uint8_t> wanted(count);
+  constexpr std::size_t kChunk = 128;
+  raster::for_each_chunk(count, kChunk, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t t = first; t < last; ++t) {
+      const std::uint32_t* i = &mesh.indices[3 * t];
+      const glm::dvec3 &a = positions[i[0]], &b = positions[i[1]], &c = positions[i[2]];
+      const glm::dvec3 normal = glm::cross(b - a, c - a) * side, to = eye - a;
+      const double length = glm::length(normal);
+      wanted[t] = glm::dot(normal, to) > kLeastCosine * length * glm::length(to) &&
+                  any_before(a, normal / length, casters);
+    }
+  });
+  std::vector<std::uint32_t> kept;
+  for (std::size_t t = 0; t < count; ++t)
+    if (wanted[t]) kept.insert(kept.end(), &mesh.indices[3 * t], &mesh.indices[3 * t] + 3);
+  return kept;
 }
 
 class MeshTaker {
@@ -59,17 +95,20 @@ class MeshTaker {
     for (const PointSource& source : sources) first_set_.push_back(source.first_set);
   }
 
-  /// `radiance` is one a vertex.
+  /// `radiance` is one a vertex; colours are found for vertices of the triangles `seen`.
   void take(const PlacedObject& object, std::size_t part, std::span<const glm::vec3> radiance,
-            std::span<MeshTake*> takes) const {
+            std::span<const std::uint32_t> seen, std::span<MeshTake*> takes) const {
     const Mesh& mesh = *object.meshes[part];
     const glm::dvec3 diffuse(linear_color(object.object->model->parts[part].material.diffuse));
     for (MeshTake* take : takes) take->colors.resize(mesh.positions.size());
+    std::vector<std::uint8_t> wanted(mesh.positions.size(), 0);
+    for (const std::uint32_t v : seen) wanted[v] = 1;
     constexpr std::size_t kChunk = 64;
     raster::for_each_chunk(
         mesh.positions.size(), kChunk, options_.threads, [&](std::size_t first, std::size_t last) {
           std::vector<glm::vec3> transfers(sources_.size()), values(sources_.size());
           for (std::size_t v = first; v < last; ++v) {
+            if (!wanted[v]) continue;
             const glm::dvec3 at(object.object->world_from_model * mesh.positions[v]);
             const glm::dvec3 normal =
                 glm::normalize(glm::dvec3(object.world_from_model_normal * mesh.normals[v]));
@@ -86,6 +125,9 @@ class MeshTaker {
               takes[j]->colors[v] = glm::vec4(values[j], 0.0f);
           }
         });
+    for (MeshTake* take : takes)
+      take->any = std::ranges::any_of(
+          seen, [&](std::uint32_t v) { return take->colors[v] != glm::vec4(0.0f); });
   }
 
  private:
@@ -134,8 +176,12 @@ void take_from_objects(const LitScene& scene, const PatchVisibility& visibility,
                        const ShadowTakeOptions& options, ObjectTakes& result) {
   std::size_t meshes = 0;
   for (const PlacedObject& object : objects) meshes += object.meshes.size();
-  result.resize(shadows.size());
-  for (std::vector<MeshTake>& takes : result) takes.resize(meshes);
+  result.indices.assign(meshes, {});
+  result.of_shadow.resize(shadows.size());
+  for (std::vector<MeshTake>& takes : result.of_shadow) takes.resize(meshes);
+  std::vector<CasterPoints> casters;
+  for (const PlacedObject& object : objects)
+    if (object.object->casts) casters.push_back(points_of(object));
   std::size_t number = 0;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const PlacedObject& object = objects[i];
@@ -145,18 +191,15 @@ void take_from_objects(const LitScene& scene, const PatchVisibility& visibility,
     for (std::size_t p = 0; p < object.meshes.size(); ++p, ++number) {
       const Mesh& mesh = *object.meshes[p];
       std::vector<MeshTake*> takes;
-      for (std::vector<MeshTake>& of_shadow : result) takes.push_back(&of_shadow[number]);
-      for (MeshTake* take : takes) take->indices.clear();
-      if (!object.object->receives) continue;
+      for (std::vector<MeshTake>& of_shadow : result.of_shadow) takes.push_back(&of_shadow[number]);
+      for (MeshTake* take : takes) take->any = false;
       const auto light = std::span(radiance[i]).subspan(first_vertex, mesh.positions.size());
       first_vertex += mesh.positions.size();
-      taker.take(object, p, light, takes);
-      const std::vector<std::uint32_t> seen = seen_triangles(object, mesh, glm::dvec3(eye_world));
-      raster::for_each_chunk(takes.size(), 4, options.threads,
-                             [&](std::size_t first, std::size_t last) {
-                               for (std::size_t j = first; j < last; ++j)
-                                 keep_taken(seen, *takes[j]);
-                             });
+      if (!object.object->receives) continue;
+      std::vector<std::uint32_t>& indices = result.indices[number];
+      indices = shadowed_triangles(object, mesh, glm::dvec3(eye_world), casters, options.threads);
+      if (indices.empty()) continue;
+      taker.take(object, p, light, indices, takes);
     }
   }
 }

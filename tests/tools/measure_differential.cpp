@@ -50,7 +50,7 @@ std::vector<Setting> settings() {
        {std::size_t{5}, std::size_t{10}, std::size_t{20}, std::size_t{50}, std::size_t{100}, kAll})
     add(n, "");
   for (const std::size_t n : {std::size_t{10}, std::size_t{20}, std::size_t{50}})
-    add(n, " volumes").method.mask = ShadowMask::volumes;
+    add(n, " maps").method.mask = ShadowMask::map;
   for (const std::size_t n : {std::size_t{50}, kAll}) {
     add(n, " dithered").method.take.precision = ShadowPrecision::dithered;
     add(n, " values").method.take.precision = ShadowPrecision::values;
@@ -65,6 +65,7 @@ std::vector<Setting> settings() {
   DifferentialSettings& paper = add(50, " as in the paper");
   paper.method.take.returned_light = paper.method.take.by_share = false;
   paper.method.take.whole_clusters = true;
+  paper.method.mask = ShadowMask::map;
   paper.light.drop_pruned = true;
   DifferentialSettings& most = add(kAll, " of all power, radiance");
   most.method.take.precision = ShadowPrecision::radiance;
