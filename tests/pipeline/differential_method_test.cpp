@@ -247,6 +247,51 @@ TEST(Differential, AShadowModelCastsInTheObjectsPlace) {
 }
 
 // Oracle: what is taken in floats, not rounded at all.
+/// Draws of objects in the passes that subtract.
+std::size_t self_shadow_draws(const raster::Frame& frame, const std::string& object) {
+  std::size_t count = 0;
+  for (const raster::Pass& pass : frame.passes()) {
+    if (!pass.label.starts_with(differential_label::kSubtract)) continue;
+    for (const raster::Command& command : pass.commands) {
+      const auto* draw = std::get_if<raster::Draw>(&command);
+      count += draw && draw->label == object ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+// Oracles: a ball is convex, so it has no shadow of its own; a ball behind another has.
+TEST(Differential, OnlyTrianglesWithACasterBeforeThemAreDrawnAgain) {
+  const Setting setting;
+  Scene scene = ball_at({0.4f, 0.5f, 0.0f});
+  Picture alone, two, unshadowed;
+  DifferentialMethod method(setting.scene, setting.paths);
+  const auto record = [&](Picture& picture, bool self_shadows) {
+    raster::Frame frame = method.record(scene, setting.camera, setting.photograph(),
+                                        picture.targets(), {.self_shadows = self_shadows});
+    raster::execute(frame);
+    return frame;
+  };
+  EXPECT_EQ(self_shadow_draws(record(alone, true), "ball"), 0u);
+  // Between the ball and the panel, out of the camera's way to the ball.
+  scene.objects.push_back({.name = "other",
+                           .model = test::model_of(test::icosphere_mesh(0.2f, 2)),
+                           .world_from_model = test::placed({0.4f, 1.3f, -0.1f})});
+  EXPECT_GT(self_shadow_draws(record(two, true), "ball"), 0u);
+  EXPECT_EQ(self_shadow_draws(record(unshadowed, false), "ball"), 0u);
+  std::size_t darker = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const raster::Rgba8 &with = two.color.rgba8().at(x, y),
+                          &without = unshadowed.color.rgba8().at(x, y);
+      if (with[3] == 0) continue;
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_LE(with[c], without[c]);
+      darker += with[0] < without[0] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(darker, 50u);
+}
+
 TEST(Differential, BytesLoseFaintShadowsAndDitherKeepsThemOnAverage) {
   const Setting setting;
   // Black, so that there are many faint shadows: dither is even over many, not over a few.
