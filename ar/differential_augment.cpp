@@ -68,6 +68,7 @@ struct DifferentialAugmenter::Impl {
   raster::StencilBuffer stencil;
   raster::ExecuteMemory memory;
   pipeline::ReducedOccluders occluders;
+  pipeline::PictureFinish finish;
   DifferentialReport report;
 
   Impl(const Lens& lens, std::shared_ptr<const pipeline::LitScene> lit,
@@ -79,7 +80,8 @@ struct DifferentialAugmenter::Impl {
               is_wide() ? raster::ColorFormat::rgba32f : raster::ColorFormat::rgba8),
         depth(view.width(), view.height()),
         stencil(view.width(), view.height()),
-        occluders(settings.occluder_triangles) {
+        occluders(settings.occluder_triangles),
+        finish(scene->tone, settings.method.take) {
     settings.light.transfer.threads = settings.threads;
     settings.method.take.threads = settings.threads;
     const std::vector<std::uint32_t> receivers =
@@ -117,8 +119,7 @@ struct DifferentialAugmenter::Impl {
 
   /// r: a shadow fell there; b: a virtual object is visible; as rows from the bottom.
   /// `photograph` is only looked at where shadows take no share.
-  std::vector<std::uint8_t> masks(const raster::ImageView& photograph,
-                                  const pipeline::PictureFinish& finish) const {
+  std::vector<std::uint8_t> masks(const raster::ImageView& photograph) const {
     std::vector<std::uint8_t> rows;
     rows.reserve(std::size_t{4} * view.width() * view.height());
     const auto add = [&](bool object, bool kept) {
@@ -182,15 +183,14 @@ Augmented DifferentialAugmenter::augment(const Image& photograph, const pipeline
   out.execute_ms = watch.lap_ms();
 
   const int threads = at.settings.threads;
-  const pipeline::PictureFinish finish(at.scene->tone, options.take);
   out.composite =
       by_share
-          ? composite(at.view, photograph, at.color, finish, threads)
+          ? composite(at.view, photograph, at.color, at.finish, threads)
           : composite(at.view, photograph, resampled,
                       pipeline::finish_picture(picture, at.color, at.scene->tone, options.take),
                       threads);
   if (at.settings.masks) {
-    const std::vector<std::uint8_t> rows = at.masks(picture, finish);
+    const std::vector<std::uint8_t> rows = at.masks(picture);
     out.shadow_mask = mask_at_photo(at.view, rows, 0, threads);
     out.shadow_on_virtual = mask_at_photo(at.view, rows, 1, threads);
     out.object_mask = mask_at_photo(at.view, rows, 2, threads);

@@ -62,10 +62,10 @@ class DifferentialMethod {
   /// Targets have the photograph's size: colour (RGBA8 for bytes and dithered, RGBA32F otherwise),
   /// depth, and stencil for volumes. After execution colour is what PictureFinish takes: of a
   /// visible virtual object its value over 255, or radiance; elsewhere
-  /// - bytes, dithered, values: what is left of the photograph's value, as a share of it, or (not
-  /// by
-  ///   share) that value over 255;
-  /// - radiance: what shadows take (0 or less), a share of the photograph's or radiance;
+  /// - by share: what is left of the photograph's radiance, as a part of it (bytes, dithered,
+  ///   values), or that less 1 (radiance);
+  /// - else the photograph's value less what shadows take, over 255 (bytes, dithered, values), or
+  ///   the radiance that they take, 0 or less (radiance);
   /// alpha is 1 where a virtual object is visible and 0 elsewhere.
   /// The frame borrows from this object: it is good until the next one is recorded.
   /// Preconditions: photograph and targets outlive the execution; the photograph is only looked at

@@ -165,17 +165,20 @@ class Takes {
         shadows_[j].given[i] = transfers[j] == glm::vec3(0.0f) ? 0 : 1;
       }
       const glm::dvec3 light(paths_.vertex_radiance[vertex]);
-      if (options_.precision != ShadowPrecision::radiance) {
-        intensity_transfers(scene_.tone, light, transfers, first_set_, values);
-        const glm::vec3 whole =
-            options_.by_share ? inverse(scene_.tone.value(light)) : glm::vec3(1.0f / 255.0f);
+      if (options_.by_share) {
+        const glm::vec3 whole = inverse(light);
         for (std::size_t j = 0; j < shadows_.size(); ++j)
-          shadows_[j].colors[i] = glm::vec4((values[j] + dither(j)) * whole, 0.0f);
-      } else {
-        const glm::vec3 whole = options_.by_share ? inverse(light) : glm::vec3(1.0f);
-        for (std::size_t j = 0; j < shadows_.size(); ++j)
-          shadows_[j].colors[i] = glm::vec4(transfers[j] * whole, 0.0f);
+          shadows_[j].colors[i] = glm::vec4(transfers[j] * whole + dither(j), 0.0f);
+        continue;
       }
+      if (options_.precision == ShadowPrecision::radiance) {
+        values = transfers;
+      } else {
+        intensity_transfers(scene_.tone, light, transfers, first_set_, values);
+        for (glm::vec3& value : values) value /= 255.0f;
+      }
+      for (std::size_t j = 0; j < shadows_.size(); ++j)
+        shadows_[j].colors[i] = glm::vec4(values[j] + dither(j), 0.0f);
     }
   }
 
@@ -207,13 +210,13 @@ class Takes {
     return sum;
   }
 
-  /// In values. Also at a vertex that nothing is taken from: values are interpolated, and then
-  /// rounded.
+  /// In steps of eight bits. Also at a vertex that nothing is taken from: what is taken is
+  /// interpolated, and then rounded.
   float dither(std::size_t j) const {
     if (options_.precision != ShadowPrecision::dithered) return 0.0f;
     // The golden ratio's multiples are even over [0, 1) however many there are.
     const double turn = static_cast<double>(j + 1) * 0.6180339887498949;
-    return static_cast<float>(turn - std::floor(turn) - 0.5);
+    return static_cast<float>((turn - std::floor(turn) - 0.5) / 255.0);
   }
 
   const LitScene& scene_;

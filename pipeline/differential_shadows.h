@@ -41,8 +41,9 @@ struct ShadowTakeOptions {
   /// A cluster's shadow takes the light of all its sources, as in the paper, and not only of those
   /// that may be hidden.
   bool whole_clusters = false;
-  /// A shadow takes a share of what each pixel shows, so that dark boards of a floor lose less than
-  /// light ones and its pattern stays; without it, it takes one amount, as in the paper.
+  /// A shadow takes a share of the radiance that each pixel shows, so that dark boards of a floor
+  /// lose less than light ones and its pattern stays, and shares need no estimate of what other
+  /// shadows take; without it, it takes one amount, as in the paper.
   bool by_share = true;
   /// An object gives back the light that its side away from a source sends to where it hides that
   /// source; without it the room sees black objects, as in the paper.
@@ -69,8 +70,8 @@ struct SourceShadow {
   /// world, that all it can reach of them lies between.
   std::vector<std::uint32_t> indices;
   std::vector<glm::dvec3> reach;
-  /// One a position: what is subtracted, values over 255 (with a dither's offset, so perhaps below
-  /// 0) or radiance; by share, that over the value or radiance of the position; w is 0.
+  /// One a position: what is subtracted, by share a part of its radiance, else values over 255 or
+  /// radiance; with a dither's offset, so perhaps below 0; w is 0.
   std::vector<glm::vec4> colors;
   /// One a position: 1 where its light is more than nothing.
   std::vector<std::uint8_t> given;

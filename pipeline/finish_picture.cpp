@@ -15,13 +15,27 @@ std::uint8_t nearest(double value) {
 
 }  // namespace
 
+PictureFinish::PictureFinish(const ToneCurve& tone, const ShadowTakeOptions& options)
+    : tone_(tone),
+      radiance_(options.precision == ShadowPrecision::radiance),
+      by_share_(options.by_share) {
+  if (!by_share_) return;
+  left_.reserve(std::size_t{3} * 256 * 256);
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (int value = 0; value < 256; ++value) {
+      const double light = tone.radiance(c, value);
+      for (int part = 0; part < 256; ++part)
+        left_.push_back(nearest(tone.value(c, light * (part / 255.0))));
+      left_.back() = static_cast<std::uint8_t>(value);
+    }
+  }
+}
+
 std::array<std::uint8_t, 3> PictureFinish::pixel(const std::uint8_t* photograph,
                                                  const raster::Rgba8& drawn) const {
   if (drawn[3] != 0 || !by_share_) return {drawn[0], drawn[1], drawn[2]};
   std::array<std::uint8_t, 3> out{};
-  for (std::size_t c = 0; c < 3; ++c)
-    // No tie: 255 is odd.
-    out[c] = static_cast<std::uint8_t>((2 * photograph[c] * drawn[c] + 255) / 510);
+  for (std::size_t c = 0; c < 3; ++c) out[c] = left_[(c * 256 + photograph[c]) * 256 + drawn[c]];
   return out;
 }
 
@@ -31,15 +45,17 @@ std::array<std::uint8_t, 3> PictureFinish::pixel(const std::uint8_t* photograph,
   std::array<std::uint8_t, 3> out{};
   for (std::size_t c = 0; c < 3; ++c) {
     const double value = static_cast<double>(drawn[static_cast<int>(c)]);
-    if (!radiance_) {
-      out[c] = nearest(value * (object || !by_share_ ? 255.0 : photograph[c]));
-    } else if (object) {
-      out[c] = nearest(tone_.value(c, value));
-    } else if (value == 0.0) {
-      out[c] = photograph[c];
+    if (object) {
+      out[c] = nearest(radiance_ ? tone_.value(c, value) : 255.0 * value);
+    } else if (by_share_) {
+      const double part = radiance_ ? 1.0 + value : value;
+      out[c] = part == 1.0 ? photograph[c]
+                           : nearest(tone_.value(c, tone_.radiance(c, photograph[c]) * part));
+    } else if (radiance_) {
+      out[c] = value == 0.0 ? photograph[c]
+                            : nearest(tone_.value(c, tone_.radiance(c, photograph[c]) + value));
     } else {
-      const double light = tone_.radiance(c, photograph[c]);
-      out[c] = nearest(tone_.value(c, by_share_ ? light * (1.0 + value) : light + value));
+      out[c] = nearest(255.0 * value);
     }
   }
   return out;

@@ -21,14 +21,11 @@ namespace gnomon::pipeline {
 class PictureFinish {
  public:
   /// `options` are those of the recording.
-  PictureFinish(const ToneCurve& tone, const ShadowTakeOptions& options)
-      : tone_(tone),
-        radiance_(options.precision == ShadowPrecision::radiance),
-        by_share_(options.by_share) {}
+  PictureFinish(const ToneCurve& tone, const ShadowTakeOptions& options);
 
-  /// Red, green, blue of a pixel. Without an object (alpha 0): the photograph's value times the
-  /// share that is left, or what was drawn; T of the photograph's radiance less what was taken; of
-  /// an object its value, or T of its radiance. Rounded to nearest.
+  /// Red, green, blue of a pixel. Without an object (alpha 0): T of the part of the photograph's
+  /// radiance that is left, or what was drawn, or T of the photograph's radiance less what was
+  /// taken; of an object its value, or T of its radiance. Rounded to nearest.
   std::array<std::uint8_t, 3> pixel(const std::uint8_t* photograph,
                                     const raster::Rgba8& drawn) const;
   std::array<std::uint8_t, 3> pixel(const std::uint8_t* photograph, const glm::vec4& drawn) const;
@@ -47,6 +44,8 @@ class PictureFinish {
       std::bit_cast<std::uint32_t>(raster::Rgba8{255, 255, 255, 0});
   const ToneCurve& tone_;
   bool radiance_, by_share_;
+  /// By channel, photograph's value and part of 255 that is left; of by_share in bytes.
+  std::vector<std::uint8_t> left_;
 };
 
 /// All pixels: rows r, g, b, a from the bottom row, a as in `drawn`. A pixel that nothing was taken
