@@ -36,7 +36,7 @@ struct Transfers {
 };
 
 struct TransferOptions {
-  double power_share = 0.7;
+  double power_share = 0.8;
   /// Rays a pair of source and vertex: 1, 4 or 16.
   int samples = 4;
   /// As in raster::ExecuteOptions.

@@ -266,24 +266,32 @@ void precision_table(const std::vector<Case>& cases, const Pictures& pictures) {
   }
 }
 
-void paste(Image& sheet, const Image& picture, int x0, int y0) {
-  // Half the size: the mean of two by two pixels.
-  for (int y = 0; y < picture.height / 2; ++y) {
-    for (int x = 0; x < picture.width / 2; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        int sum = 2;
-        for (const int j : {0, 1})
-          for (const int i : {0, 1}) sum += picture.at(2 * x + i, 2 * y + j)[c];
-        sheet.at(x0 + x, y0 + y)[c] = static_cast<std::uint8_t>(sum / 4);
-      }
+/// Of a picture: a part around the shadow, as large as the contact sheet has room for.
+struct Crop {
+  static constexpr int kWidth = 280, kHeight = 210;
+  int x0 = 0, y0 = 0;
+
+  Crop(const std::vector<std::size_t>& region, int width, int height) {
+    double x = 0.0, y = 0.0;
+    for (const std::size_t i : region) {
+      x += static_cast<double>(i % static_cast<std::size_t>(width));
+      y += static_cast<double>(i / static_cast<std::size_t>(width));
     }
+    const auto count = static_cast<double>(std::max<std::size_t>(region.size(), 1));
+    x0 = std::clamp(static_cast<int>(x / count) - kWidth / 2, 0, std::max(0, width - kWidth));
+    y0 = std::clamp(static_cast<int>(y / count) - kHeight / 2, 0, std::max(0, height - kHeight));
   }
+};
+
+void paste(Image& sheet, const Image& picture, const Crop& crop, int x, int y) {
+  for (int row = 0; row < std::min(Crop::kHeight, picture.height); ++row)
+    std::copy_n(picture.at(crop.x0, crop.y0 + row), 3 * std::min(Crop::kWidth, picture.width),
+                sheet.at(x, y + row));
 }
 
-void write_contact_sheet(const fs::path& file, const TruthSet& set, const std::vector<Case>& cases,
+void write_contact_sheet(const fs::path& file, const std::vector<Case>& cases,
                          const Pictures& pictures) {
-  const int width = set.background.width / 2, height = set.background.height / 2;
-  Image sheet{5 * width, static_cast<int>(cases.size()) * height, 3, {}};
+  Image sheet{5 * Crop::kWidth, static_cast<int>(cases.size()) * Crop::kHeight, 3, {}};
   sheet.pixels.resize(std::size_t{3} * sheet.width * sheet.height);
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const Image& photo = cases[k].truth->photo;
@@ -291,10 +299,11 @@ void write_contact_sheet(const fs::path& file, const TruthSet& set, const std::v
     const Image reference = with_pixels(photo, cases[k].reference.pixels);
     const Image errors[] = {error_picture(flip(photo, ours)),
                             error_picture(flip(photo, reference))};
+    const Crop crop(cases[k].region, photo.width, photo.height);
     int x = 0;
     for (const Image* one : {&photo, &ours, &reference, &errors[0], &errors[1]}) {
-      paste(sheet, *one, x, static_cast<int>(k) * height);
-      x += width;
+      paste(sheet, *one, crop, x, static_cast<int>(k) * Crop::kHeight);
+      x += Crop::kWidth;
     }
   }
   write_png(file, sheet);
@@ -304,7 +313,7 @@ void run(const TruthSet& set, const fs::path& out) {
   const std::vector<Case> cases = reference_table(set, out);
   const Pictures pictures = settings_table(set, cases, out);
   precision_table(cases, pictures);
-  if (!out.empty()) write_contact_sheet(out / "contact.png", set, cases, pictures);
+  if (!out.empty()) write_contact_sheet(out / "contact.png", cases, pictures);
 }
 
 }  // namespace
