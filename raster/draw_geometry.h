@@ -34,8 +34,9 @@ class DrawGeometry {
   /// Second step, after all vertices: set-up and bins of one chunk.
   void run_chunk(const Kernels& kernels, std::size_t chunk);
 
-  TriangleSource source_of(const TriangleChunk& chunk) const {
-    return {vertices_.inverse_w, chunk.set_up.pieces};
+  /// `colors`: of the draw that the triangles are drawn by.
+  TriangleSource source_of(const TriangleChunk& chunk, const VertexColors& colors) const {
+    return {vertices_.inverse_w, chunk.set_up.pieces, colors};
   }
   std::span<const TriangleChunk> chunks() const { return std::span(chunks_).first(chunk_count_); }
 

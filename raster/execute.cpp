@@ -1,7 +1,8 @@
 // Commands are run in groups: all passes in a row whose targets have one size, cut where a depth
 // buffer that was drawn into is looked up, and where a group's set-up triangles would take too much
-// memory. Inside a group the front end brings all vertices to the window, then sets up and bins all
-// triangles, then each tile runs all commands of all passes while its pixels are in cache.
+// memory. Inside a group the front end brings all vertices to the window and lights those that are
+// lit at vertices, then sets up and bins all triangles, then each tile runs all commands of all
+// passes while its pixels are in cache.
 #include "raster/execute.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "raster/draw_geometry.h"
 #include "raster/draw_tile.h"
 #include "raster/executor.h"
+#include "raster/lit_vertices.h"
 #include "raster/lookup_bounds.h"
 #include "raster/tile.h"
 
@@ -42,11 +44,18 @@ struct Job {
   DrawSetup setup = {};
   FragmentSetup fragments = {};
   std::size_t geometry = 0;
+  VertexColors colors = {};
 };
 
 /// Vertices [first, last) of a draw's geometry, or its chunk `first`.
 struct Task {
   DrawGeometry* geometry;
+  std::size_t first, last;
+};
+
+/// Vertices [first, last) of a draw that is lit at vertices.
+struct LightTask {
+  LitVertices* vertices;
   std::size_t first, last;
 };
 
@@ -59,7 +68,11 @@ struct ExecuteMemory::Parts {
   /// The first geometry_count of them are in use.
   std::vector<std::unique_ptr<DrawGeometry>> geometries;
   std::size_t geometry_count = 0;
+  /// The first lit_count of them are in use.
+  std::vector<std::unique_ptr<LitVertices>> lit;
+  std::size_t lit_count = 0;
   std::vector<Task> vertices, chunks;
+  std::vector<LightTask> lights;
 };
 
 ExecuteMemory::ExecuteMemory() : parts_(std::make_unique<Parts>()) {}
@@ -79,16 +92,29 @@ std::size_t geometry_of(Memory& memory, const DrawSetup& setup) {
   return memory.geometry_count++;
 }
 
+/// Colours of the draw's vertices, which the first phase lights if that is asked for.
+VertexColors colors_of(Memory& memory, const Draw& draw, const FragmentSetup& fragments) {
+  if (!fragments.color || !lights_vertices(draw)) return {draw.mesh.colors, draw.mesh.colors};
+  if (memory.lit_count == memory.lit.size()) memory.lit.push_back(std::make_unique<LitVertices>());
+  LitVertices& lit = *memory.lit[memory.lit_count++];
+  lit.begin(draw);
+  for (std::size_t i = 0; i < lit.vertex_count(); i += kVerticesPerPiece)
+    memory.lights.push_back({&lit, i, std::min(lit.vertex_count(), i + kVerticesPerPiece)});
+  return lit.colors();
+}
+
 void set_up_draws(Memory& memory, const Kernels& kernels) {
-  memory.geometry_count = 0;
+  memory.geometry_count = memory.lit_count = 0;
   memory.vertices.clear();
   memory.chunks.clear();
+  memory.lights.clear();
   for (Job& job : memory.jobs) {
     const Draw* draw = std::get_if<Draw>(job.command);
     if (!draw) continue;
     job.setup = make_draw_setup(*draw, job.targets);
     job.fragments = make_fragment_setup(*draw, job.targets, kernels, memory.pool);
     job.geometry = geometry_of(memory, job.setup);
+    job.colors = colors_of(memory, *draw, job.fragments);
   }
   for (std::size_t g = 0; g < memory.geometry_count; ++g) {
     DrawGeometry* const geometry = memory.geometries[g].get();
@@ -148,7 +174,7 @@ void draw_in_tile(const Job& job, const DrawGeometry& geometry, TilePixels& pixe
     if (!draw &&
         is_idle(draw.emplace(job.setup, job.fragments, pixels), job, geometry, pixels.tile(), box))
       return;
-    const TriangleSource source = geometry.source_of(chunk);
+    const TriangleSource source = geometry.source_of(chunk, job.colors);
     for (const std::uint32_t number : numbers) draw->draw(chunk.set_up.triangles[number], source);
   }
 }
@@ -204,8 +230,13 @@ void run_group(Memory& memory, const Size& size, const Kernels& kernels, int thr
   if (memory.jobs.empty()) return;
   set_up_draws(memory, kernels);
   const auto run_vertices = [&](std::size_t i) {
-    const Task& task = memory.vertices[i];
-    task.geometry->run_vertices(kernels, task.first, task.last);
+    if (i < memory.vertices.size()) {
+      const Task& task = memory.vertices[i];
+      task.geometry->run_vertices(kernels, task.first, task.last);
+      return;
+    }
+    const LightTask& task = memory.lights[i - memory.vertices.size()];
+    task.vertices->run(kernels, task.first, task.last);
   };
   const auto run_chunk = [&](std::size_t i) {
     memory.chunks[i].geometry->run_chunk(kernels, memory.chunks[i].first);
@@ -213,7 +244,7 @@ void run_group(Memory& memory, const Size& size, const Kernels& kernels, int thr
   const auto run_one_tile = [&](std::size_t tile) { run_tile(memory, kernels, tile, size); };
   // References, so that a std::function allocates nothing.
   const Phase phases[] = {
-      {memory.vertices.size(), std::ref(run_vertices)},
+      {memory.vertices.size() + memory.lights.size(), std::ref(run_vertices)},
       {memory.chunks.size(), std::ref(run_chunk)},
       {static_cast<std::size_t>(size.tiles_x()) * size.tiles_y(), std::ref(run_one_tile)}};
   run_phases(phases, threads);

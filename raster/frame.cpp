@@ -52,6 +52,8 @@ void require_shading(const Draw& draw, const Targets& targets) {
   for (const Light& light : lit.lights) {
     require(light.spot_exponent >= 0, "a spot exponent is not negative");
     require_lookup(light.shadow_map, targets);
+    require(!lit.at_vertices || !light.shadow_map,
+            "a draw that is lit at vertices has no shadow map, which only fragments can look up");
   }
   require_texture(lit.texture, draw.mesh);
 }

@@ -85,8 +85,8 @@ class Frame {
   void begin_pass(std::string_view label, const Targets& targets);
 
   /// Records a command. Misuse: no pass was begun; a clear or blit of a target that the pass lacks;
-  /// a draw whose attribute arrays or indices do not fit its positions; lighting without normals; a
-  /// lookup of the depth buffer that the draw goes to.
+  /// a draw whose attribute arrays or indices do not fit its positions; lighting without normals,
+  /// or at vertices with a shadow map; a lookup of the depth buffer that the draw goes to.
   void clear(const Clear& clear);
   void draw(Draw draw);
   void blit(const Blit& blit);

@@ -134,11 +134,20 @@ struct DrawVertices {
   }
 };
 
+/// Colours of a draw's vertices on front and on back faces: the mesh's, or what lighting at
+/// vertices gave. Empty: 1.
+struct VertexColors {
+  std::span<const glm::vec4> front, back;
+
+  std::span<const glm::vec4> of(bool front_facing) const { return front_facing ? front : back; }
+};
+
 /// Where the attributes of a chunk's triangles come from.
 struct TriangleSource {
   /// 1/w of the draw's vertices.
   std::span<const double> inverse_w_of_vertex;
   std::span<const Piece> pieces;
+  VertexColors colors;
 
   /// 1/w of the triangle's vertices.
   std::array<double, 3> inverse_w(const SetupTriangle& triangle,

@@ -43,6 +43,14 @@ glm::vec3 world_position(const glm::mat4& m, const glm::vec4& p) {
 
 }  // namespace
 
+Fragment vertex_attributes(const MeshView& mesh, const Lit& lit, std::size_t vertex) noexcept {
+  Fragment out;
+  out.normal = world_normal(lit.world_from_model_normal, mesh.normals[vertex]);
+  out.world = world_position(lit.world_from_model, mesh.positions[vertex]);
+  if (!mesh.colors.empty()) out.color = mesh.colors[vertex];
+  return out;
+}
+
 Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, const TriangleSource& source,
                      int x, int y) noexcept {
   Fragment fragment;
@@ -54,10 +62,11 @@ Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, const Tria
 
   const glm::vec3 p = vertex_weights(draw, triangle, source, x, y);
   const std::uint32_t* index = mesh.indices.data() + triangle.first_index;
-  if (!mesh.colors.empty()) fragment.color = weighted(mesh.colors, index, p);
+  const std::span<const glm::vec4> colors = source.colors.of(triangle.front_facing);
+  if (!colors.empty()) fragment.color = weighted(colors, index, p);
   if (!mesh.texcoords.empty()) fragment.texcoord = weighted(mesh.texcoords, index, p);
   if (flat && flat->depth_lookup) fragment.model = weighted(mesh.positions, index, p);
-  if (lit) {
+  if (lit && !lit->at_vertices) {
     fragment.normal = world_normal(lit->world_from_model_normal, weighted(mesh.normals, index, p));
     fragment.world = world_position(lit->world_from_model, weighted(mesh.positions, index, p));
   }

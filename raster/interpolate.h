@@ -10,6 +10,9 @@
 
 namespace gnomon::raster {
 
+/// A vertex's own position and normal in the world, and its colour.
+Fragment vertex_attributes(const MeshView& mesh, const Lit& lit, std::size_t vertex) noexcept;
+
 /// Precondition: the triangle covers pixel (x, y); `source` is that of its chunk.
 Fragment interpolate(const Draw& draw, const SetupTriangle& triangle, const TriangleSource& source,
                      int x, int y) noexcept;

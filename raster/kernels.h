@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "raster/isa.h"
@@ -163,13 +164,25 @@ struct LitTerms {
   float world_from_model[4][4], world_from_model_normal[3][3];
 };
 
-/// A triangle's colours over a tile: lit, or `flat_color` times the mesh's colours and the share
+struct Lighting {
+  const LitTerms* terms;
+  const LitLight* lights;
+  int light_count;
+};
+
+/// Attributes of vertices in a row that are lit; `colors` is null if the mesh has none.
+struct LitAttributes {
+  const glm::vec4* positions;
+  const glm::vec3* normals;
+  const glm::vec4* colors;
+};
+
+/// A triangle's colours over a tile: lit, or `flat_color` times the vertices' colours and the share
 /// that a lookup gives.
 struct TileShading {
   TileWeights weights;
-  const LitTerms* lit;
-  const LitLight* lights;
-  int light_count;
+  /// Without terms if it is flat.
+  Lighting lighting;
   float flat_color[4];
   /// Of a flat colour, null if there is none; which channels it scales.
   const LookupTerms* lookup;
@@ -259,6 +272,12 @@ struct Kernels {
   /// Projects and snaps `count` vertices; those that the clip volume does not hold get kClipped.
   void (*project)(const Projection& projection, const glm::vec4* clip, std::size_t count,
                   const ProjectedPlanes& out) noexcept;
+
+  /// What light_vertex() gives `count` vertices for front faces, and for back faces that are lit
+  /// with the reversed normal; either may be null. Shadow maps have no part in it.
+  /// Null in plain C++: there light_vertex() does it, vertex by vertex.
+  void (*light_vertices)(const Lighting& lighting, const LitAttributes& vertices, std::size_t count,
+                         glm::vec4* front, glm::vec4* back) noexcept;
 
   /// Looks at `count` triangles, up to a batch of them.
   void (*select_triangles)(const TriangleSelector& selector, const std::uint32_t* indices,

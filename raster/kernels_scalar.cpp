@@ -272,9 +272,9 @@ void transform(const glm::mat4& m, const glm::vec4* positions, std::size_t count
 
 const Kernels& scalar_kernels() {
   static constexpr Kernels kKernels{
-      cover_blocks,   cover_pixels, compare_ranges,   test_blocks,     count_blocks, add_to_blocks,
-      stencil_blocks, depth_range,  fill_block,       blend_block,     nullptr,      nullptr,
-      store_colors,   transform,    project_vertices, select_triangles};
+      cover_blocks,   cover_pixels, compare_ranges,   test_blocks, count_blocks,    add_to_blocks,
+      stencil_blocks, depth_range,  fill_block,       blend_block, nullptr,         nullptr,
+      store_colors,   transform,    project_vertices, nullptr,     select_triangles};
   return kKernels;
 }
 

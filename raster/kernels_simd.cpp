@@ -21,6 +21,7 @@
 #include "raster/count_blocks-inl.h"
 #include "raster/cover-inl.h"
 #include "raster/depth_ranges-inl.h"
+#include "raster/light_vertices-inl.h"
 #include "raster/lookup_bounds-inl.h"
 #include "raster/project-inl.h"
 #include "raster/select_triangles-inl.h"
@@ -33,10 +34,10 @@ namespace gnomon::raster {
 namespace HWY_NAMESPACE {
 
 const Kernels* kernels_of_this_target() {
-  static constexpr Kernels kKernels{cover_blocks, cover_pixels,  compare_ranges,  test_blocks,
-                                    count_blocks, add_to_blocks, stencil_blocks,  depth_range,
-                                    fill_block,   blend_block,   shade_and_store, lookup_fails,
-                                    store_colors, transform,     project,         select_triangles};
+  static constexpr Kernels kKernels{
+      cover_blocks,   cover_pixels, compare_ranges, test_blocks,    count_blocks,    add_to_blocks,
+      stencil_blocks, depth_range,  fill_block,     blend_block,    shade_and_store, lookup_fails,
+      store_colors,   transform,    project,        light_vertices, select_triangles};
   return &kKernels;
 }
 

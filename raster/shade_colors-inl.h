@@ -1,6 +1,6 @@
-// Vector kernels: colours of pixels. The same operations in the same order as
-// raster/interpolate.cpp and raster/shading.cpp, products and sums apart, each rounded once.
-// Read once for each instruction set, so its guard goes to and fro with Highway's.
+// Vector kernels: colours of pixels, and the lighting equation. The same operations in the same
+// order as raster/interpolate.cpp and raster/shading.cpp, products and sums apart, each rounded
+// once. Read once for each instruction set, so its guard goes to and fro with Highway's.
 #if defined(GNOMON_RASTER_SHADE_COLORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef GNOMON_RASTER_SHADE_COLORS_INL_H
 #undef GNOMON_RASTER_SHADE_COLORS_INL_H
@@ -115,45 +115,38 @@ HWY_INLINE void add_light(const LitLight& light, const LitTerms& lit, const Vect
             sums.specular);
 }
 
-HWY_INLINE Vector3 world_normal(const TileShading& s, VF32 p0, VF32 p1, VF32 p2) {
-  const auto n = [&](std::size_t c) HWY_ATTR {
-    return weighted(s.normals[0][c], s.normals[1][c], s.normals[2][c], p0, p1, p2);
-  };
-  const VF32 x = n(0), y = n(1), z = n(2);
+/// A unit normal in the world.
+HWY_INLINE Vector3 world_normal(const LitTerms& lit, const Vector3& n) {
   const auto row = [&](std::size_t r) HWY_ATTR {
-    const auto& m = s.lit->world_from_model_normal;
-    return hn::Add(hn::Add(hn::Mul(set(m[0][r]), x), hn::Mul(set(m[1][r]), y)),
-                   hn::Mul(set(m[2][r]), z));
+    const auto& m = lit.world_from_model_normal;
+    return hn::Add(hn::Add(hn::Mul(set(m[0][r]), n.x), hn::Mul(set(m[1][r]), n.y)),
+                   hn::Mul(set(m[2][r]), n.z));
   };
-  return {row(0), row(1), row(2)};
+  return normalized({row(0), row(1), row(2)});
 }
 
-HWY_INLINE Vector3 world_position(const TileShading& s, VF32 p0, VF32 p1, VF32 p2) {
-  const auto p = [&](std::size_t c) HWY_ATTR {
-    return weighted(s.positions[0][c], s.positions[1][c], s.positions[2][c], p0, p1, p2);
-  };
-  const VF32 x = p(0), y = p(1), z = p(2), w = p(3);
+HWY_INLINE Vector3 world_position(const LitTerms& lit, VF32 x, VF32 y, VF32 z, VF32 w) {
   const auto row = [&](std::size_t r) HWY_ATTR {
-    const auto& m = s.lit->world_from_model;
+    const auto& m = lit.world_from_model;
     return hn::Add(hn::Add(hn::Mul(set(m[0][r]), x), hn::Mul(set(m[1][r]), y)),
                    hn::Add(hn::Mul(set(m[2][r]), z), hn::Mul(set(m[3][r]), w)));
   };
   return {row(0), row(1), row(2)};
 }
 
-/// The lit colour without alpha; `base` is the mesh's colour.
-HWY_INLINE Vector3 lit_color(const TileShading& s, VF32 p0, VF32 p1, VF32 p2, const Vector3& base) {
-  const LitTerms& lit = *s.lit;
+HWY_INLINE Vector3 reversed(const Vector3& v) { return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}; }
+
+/// The lighting equation's colours without alpha, of fragments or of vertices; `base`, the mesh's
+/// colours, is 1 and left out unless `has_base`.
+HWY_INLINE Vector3 lit_color(const Lighting& lighting, const Vector3& normal, const Vector3& world,
+                             bool has_base, const Vector3& base) {
+  const LitTerms& lit = *lighting.terms;
   const VF32 zero = hn::Zero(DF32());
-  Vector3 normal = normalized(world_normal(s, p0, p1, p2));
-  if (s.reverse_normal) normal = {hn::Neg(normal.x), hn::Neg(normal.y), hn::Neg(normal.z)};
-  Vector3 world{zero, zero, zero};
-  if (lit.world_matters) world = world_position(s, p0, p1, p2);
   LightSums sums{set(lit.scene_ambient), {zero, zero, zero}, {zero, zero, zero}};
-  for (int i = 0; i < s.light_count; ++i) add_light(s.lights[i], lit, normal, world, sums);
+  for (int i = 0; i < lighting.light_count; ++i)
+    add_light(lighting.lights[i], lit, normal, world, sums);
   Vector3 color{zero, zero, zero};
-  // Without colours the base is 1.
-  const auto tinted = [&](const Vector3& v) HWY_ATTR { return s.has_colors ? mul(v, base) : v; };
+  const auto tinted = [&](const Vector3& v) HWY_ATTR { return has_base ? mul(v, base) : v; };
   if (lit.ambient) color = add(color, tinted(mul(set(lit.material_ambient), sums.ambient)));
   if (lit.diffuse) color = add(color, tinted(mul(set(lit.material_diffuse), sums.diffuse)));
   if (lit.specular && lit.specular_matters)
@@ -166,6 +159,25 @@ struct Rgba {
   Vector3 rgb;
   VF32 alpha;
 };
+
+/// The lit colours of fragments; `base` and `alpha` are the mesh's.
+HWY_INLINE Rgba lit_fragments(const TileShading& s, VF32 p0, VF32 p1, VF32 p2, const Vector3& base,
+                              VF32 alpha) {
+  const LitTerms& lit = *s.lighting.terms;
+  const auto n = [&](std::size_t c) HWY_ATTR {
+    return weighted(s.normals[0][c], s.normals[1][c], s.normals[2][c], p0, p1, p2);
+  };
+  const auto p = [&](std::size_t c) HWY_ATTR {
+    return weighted(s.positions[0][c], s.positions[1][c], s.positions[2][c], p0, p1, p2);
+  };
+  Vector3 normal = world_normal(lit, {n(0), n(1), n(2)});
+  if (s.reverse_normal) normal = reversed(normal);
+  const VF32 zero = hn::Zero(DF32());
+  Vector3 world{zero, zero, zero};
+  if (lit.world_matters) world = world_position(lit, p(0), p(1), p(2), p(3));
+  return {lit_color(s.lighting, normal, world, s.has_colors, base),
+          hn::Mul(set(lit.material_alpha), alpha)};
+}
 
 /// The share that the flat colour's lookup gives; 1 if there is none.
 HWY_INLINE VF32 share_of(const TileShading& s, VF32 p0, VF32 p1, VF32 p2) {
@@ -184,7 +196,7 @@ HWY_INLINE Rgba colors_of(const TileShading& s, VF32 p0, VF32 p1, VF32 p2, VF32 
   };
   const Vector3 rgb{base(0), base(1), base(2)};
   const VF32 alpha = base(3);
-  if (s.lit) return {lit_color(s, p0, p1, p2, rgb), hn::Mul(set(s.lit->material_alpha), alpha)};
+  if (s.lighting.terms) return lit_fragments(s, p0, p1, p2, rgb, alpha);
   Rgba color{mul({set(s.flat_color[0]), set(s.flat_color[1]), set(s.flat_color[2])}, rgb),
              hn::Mul(set(s.flat_color[3]), alpha)};
   if (s.lookup && s.lookup_scales_rgb) color.rgb = scaled(color.rgb, share);

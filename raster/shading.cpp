@@ -73,15 +73,14 @@ glm::vec4 shade_flat(const Flat& flat, const Fragment& fragment) {
   return color;
 }
 
-glm::vec4 shade_lit(const Lit& lit, const Fragment& fragment) {
-  glm::vec4 base = fragment.color;
-  if (lit.texture) base = base * sample(*lit.texture, fragment.texcoord.x, fragment.texcoord.y);
-  glm::vec3 normal = normalized(fragment.normal);
-  if (lit.two_sided && !fragment.front_facing) normal = -normal;
+/// The lighting equation at a point whose ambient and diffuse terms `base` scales.
+glm::vec4 lit_color(const Lit& lit, const Fragment& point, const glm::vec4& base) {
+  glm::vec3 normal = normalized(point.normal);
+  if (lit.two_sided && !point.front_facing) normal = -normal;
 
   LightSum sum;
   sum.ambient = lit.scene_ambient;
-  for (const Light& light : lit.lights) add_light(light, lit, normal, fragment.world, sum);
+  for (const Light& light : lit.lights) add_light(light, lit, normal, point.world, sum);
 
   const Material& material = lit.material;
   glm::vec3 color(0.0f);
@@ -92,11 +91,25 @@ glm::vec4 shade_lit(const Lit& lit, const Fragment& fragment) {
   return {color, material.alpha * base.a};
 }
 
+glm::vec4 shade_lit(const Lit& lit, const Fragment& fragment) {
+  glm::vec4 base = fragment.color;
+  if (lit.texture) base = base * sample(*lit.texture, fragment.texcoord.x, fragment.texcoord.y);
+  return lit.at_vertices ? base : lit_color(lit, fragment, base);
+}
+
+/// NaN is not greater than 0.
+float clamped(float value) { return value > 0.0f ? std::min(value, 1.0f) : 0.0f; }
+
 }  // namespace
 
 glm::vec4 shade(const Shading& shading, const Fragment& fragment) {
   if (const Flat* flat = std::get_if<Flat>(&shading)) return shade_flat(*flat, fragment);
   return shade_lit(std::get<Lit>(shading), fragment);
+}
+
+glm::vec4 light_vertex(const Lit& lit, const Fragment& vertex) {
+  const glm::vec4 color = lit_color(lit, vertex, vertex.color);
+  return {clamped(color.r), clamped(color.g), clamped(color.b), clamped(color.a)};
 }
 
 }  // namespace gnomon::raster

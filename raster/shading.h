@@ -1,6 +1,6 @@
 // How a fragment gets its colour: a constant, or OpenGL's lighting equation (4.6 compatibility,
-// section 12.2) per fragment, in world space, with the half vector of a local viewer. Sums and
-// products only, each rounded once in the order written in shading.cpp; powers by repeated
+// section 12.2) per fragment or per vertex, in world space, with the half vector of a local viewer.
+// Sums and products only, each rounded once in the order written in shading.cpp; powers by repeated
 // squaring, so no library function lies on the way to a pixel.
 #pragma once
 
@@ -57,7 +57,7 @@ struct Light {
 
 /// Lighting of a mesh that has normals. Terms can be left out, so that a pass draws ambient and
 /// emission only, or one light's diffuse and specular only. Texture and vertex colours scale
-/// ambient and diffuse.
+/// ambient and diffuse, and alpha, which is the material's.
 struct Lit {
   Material material;
   std::vector<Light> lights;
@@ -65,6 +65,14 @@ struct Lit {
   bool ambient = true, emission = true, diffuse = true, specular = true;
   /// Back faces are lit with the reversed normal.
   bool two_sided = false;
+  /// The fixed function's own lighting (OpenGL 4.6 compatibility, section 12.2): the equation at
+  /// each vertex of the mesh, its normal normalised (GL_NORMALIZE), its colours and alpha clamped
+  /// to [0, 1] (not a number: 0); they are interpolated to fragments as a mesh's colours are, and
+  /// not clamped again. The specular term is part of the sum (GL_SINGLE_COLOR), so the texture
+  /// scales it too. With two_sided a vertex has a colour a side, and a triangle's facing chooses,
+  /// of a piece that clipping made its own. Misuse: a light with a shadow map, which only fragments
+  /// can look up.
+  bool at_vertices = false;
   glm::vec3 eye_world{0.0f};
   glm::mat4 world_from_model{1.0f};
   /// Inverse transpose of the upper 3x3 of world_from_model, up to a positive scale.
@@ -74,11 +82,12 @@ struct Lit {
 
 using Shading = std::variant<Flat, Lit>;
 
-/// What is interpolated, perspective-correct, to a fragment.
+/// What is interpolated, perspective-correct, to a fragment; or a vertex's own.
 struct Fragment {
   glm::vec3 world{0.0f}, normal{0.0f};
   /// Position in the mesh's own space.
   glm::vec4 model{0.0f, 0.0f, 0.0f, 1.0f};
+  /// The mesh's colour; of a fragment that is lit at vertices, what light_vertex() gave them.
   glm::vec4 color{1.0f};
   glm::vec2 texcoord{0.0f};
   bool front_facing = true;
@@ -86,5 +95,8 @@ struct Fragment {
 
 /// The colour of a fragment, not clamped.
 glm::vec4 shade(const Shading& shading, const Fragment& fragment);
+
+/// What Lit::at_vertices gives a vertex, without the texture: in [0, 1].
+glm::vec4 light_vertex(const Lit& lit, const Fragment& vertex);
 
 }  // namespace gnomon::raster

@@ -83,6 +83,10 @@ TEST_P(SteadyState, AllocatesNothing) {
   Lit lit;
   lit.lights.resize(3);
   frame.draw({.state = {.depth = DepthState{}}, .mesh = mesh, .shading = lit});
+  lit.at_vertices = true;
+  frame.draw({.state = {.depth = DepthState{}}, .mesh = mesh, .shading = lit});
+  lit.two_sided = true;
+  frame.draw({.state = {.depth = DepthState{}}, .mesh = mesh, .shading = lit});
   frame.begin_pass("counts", targets);
   const StencilState counts = StencilState::both({.depth_fail = StencilOp::incr_wrap});
   frame.draw({.state = {.depth = DepthState{.write = false}, .stencil = counts}, .mesh = mesh});

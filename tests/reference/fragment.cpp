@@ -167,6 +167,25 @@ void write_color(ColorBuffer& target, int x, int y, const ColorState& state,
   }
 }
 
+/// Sets what lies in the world, of a normal and a position in the mesh's space.
+void to_world(const Lit& lit, const glm::vec3& n, const glm::vec4& p, Fragment& out) {
+  const glm::mat3& a = lit.world_from_model_normal;
+  const glm::mat4& b = lit.world_from_model;
+  for (int row = 0; row < 3; ++row) {
+    out.normal[row] = (a[0][row] * n.x + a[1][row] * n.y) + a[2][row] * n.z;
+    out.world[row] = (b[0][row] * p.x + b[1][row] * p.y) + (b[2][row] * p.z + b[3][row] * p.w);
+  }
+}
+
+/// The colour of vertex i of a mesh that is lit at vertices, by whose fragments it is asked for.
+glm::vec4 lit_vertex(const Draw& draw, const Lit& lit, std::uint32_t i, bool front_facing) {
+  Fragment vertex;
+  vertex.front_facing = front_facing;
+  if (!draw.mesh.colors.empty()) vertex.color = draw.mesh.colors[i];
+  to_world(lit, draw.mesh.normals[i], draw.mesh.positions[i], vertex);
+  return light_vertex(lit, vertex);
+}
+
 }  // namespace
 
 Outcome process_fragment(const Draw& draw, const Targets& targets, const Sample& sample,
@@ -209,20 +228,16 @@ Fragment interpolate(const Draw& draw, const std::uint32_t* index, const glm::ve
   };
   Fragment fragment;
   fragment.front_facing = front_facing;
+  const Lit* const lit = std::get_if<Lit>(&draw.shading);
   if (!draw.mesh.colors.empty()) fragment.color = mix(draw.mesh.colors);
+  if (lit && lit->at_vertices) {
+    std::array<glm::vec4, 3> c;
+    for (std::size_t k = 0; k < 3; ++k) c[k] = lit_vertex(draw, *lit, index[k], front_facing);
+    fragment.color = (c[0] * w.x + c[1] * w.y) + c[2] * w.z;
+  }
   if (!draw.mesh.texcoords.empty()) fragment.texcoord = mix(draw.mesh.texcoords);
   fragment.model = mix(draw.mesh.positions);
-  if (const Lit* lit = std::get_if<Lit>(&draw.shading)) {
-    const glm::vec3 n = mix(draw.mesh.normals);
-    const glm::vec4 p = mix(draw.mesh.positions);
-    const glm::mat3& a = lit->world_from_model_normal;
-    const glm::mat4& b = lit->world_from_model;
-    for (int row = 0; row < 3; ++row) {
-      fragment.normal[row] = (a[0][row] * n.x + a[1][row] * n.y) + a[2][row] * n.z;
-      fragment.world[row] =
-          (b[0][row] * p.x + b[1][row] * p.y) + (b[2][row] * p.z + b[3][row] * p.w);
-    }
-  }
+  if (lit) to_world(*lit, mix(draw.mesh.normals), mix(draw.mesh.positions), fragment);
   return fragment;
 }
 

@@ -1,7 +1,7 @@
 // The slow, obvious renderer that is the oracle of raster/: one loop a pixel over the whole target,
 // every draw after the other; no tiles in the walk, no blocks, no masks, no incremental sums. It
 // follows docs/semantics.md, not the fast code; of raster/ it uses only the frame's data, the
-// colour of a fragment (shade) and the buffers.
+// colour of a fragment (shade) or a vertex (light_vertex) and the buffers.
 #pragma once
 
 #include <cstddef>
