@@ -50,6 +50,7 @@ class Decoder {
   }
 
   // What fields() asks of a direction.
+  std::uint32_t version() const { return version_; }
   void byte(std::string_view what, std::uint8_t& value) { value = in_.u8(what); }
   void flag(std::string_view what, bool& value) { value = number(what, 2) != 0; }
   void integer(std::string_view what, int& value) { value = static_cast<int>(in_.u32(what)); }
@@ -177,8 +178,9 @@ class Decoder {
       in_.fail(0, "this does not begin with \"gnomon frame\"");
     const std::size_t at = in_.offset();
     const std::uint32_t version = in_.u32("the version");
-    if (version != kFrameVersion)
-      in_.fail(at, "the version is " + std::to_string(version) + "; version 1 can be read");
+    if (version < 1 || version > kFrameVersion)
+      in_.fail(at, "the version is " + std::to_string(version) + "; versions 1 and 2 can be read");
+    version_ = version;
   }
 
   void buffer() {
@@ -296,6 +298,7 @@ class Decoder {
   }
 
   ByteReader in_;
+  std::uint32_t version_ = kFrameVersion;
   std::uint64_t buffer_bytes_left_;
   std::shared_ptr<Store> store_ = std::make_shared<Store>();
   RecordedFrame out_;

@@ -73,6 +73,8 @@ std::uint8_t format_of(const StencilBuffer&) { return 0; }
 /// Writes the passes and gathers on the way what they refer to.
 class Encoder {
  public:
+  explicit Encoder(std::uint32_t version) : version_(version) {}
+
   void passes(std::span<const Pass> passes) {
     body_.u32(checked_count(passes.size()));
     for (const Pass& pass : passes) {
@@ -87,7 +89,7 @@ class Encoder {
   std::vector<std::uint8_t> file() {
     ByteWriter out;
     out.text(kFrameMagic);
-    out.u32(kFrameVersion);
+    out.u32(version_);
     out.u32(checked_count(buffer_index_.size()));
     out.bytes(buffers_.take());
     arrays_.write(out);
@@ -98,6 +100,7 @@ class Encoder {
   }
 
   // What fields() asks of a direction. Nothing is named: writing cannot fail.
+  std::uint32_t version() const { return version_; }
   void byte(std::string_view, std::uint8_t value) { body_.u8(value); }
   void flag(std::string_view, bool value) { body_.u8(value); }
   void integer(std::string_view, int value) { body_.u32(static_cast<std::uint32_t>(value)); }
@@ -173,16 +176,30 @@ class Encoder {
   void map(std::string_view what, const DepthBuffer* map) { target(what, map); }
 
  private:
+  const std::uint32_t version_;
   ByteWriter body_, buffers_;
   /// Asked by address and never walked, so that no address is seen in the bytes.
   std::map<const void*, std::uint32_t> buffer_index_;
   Table arrays_, textures_, pictures_;
 };
 
+bool lights_at_vertices(const Command& command) {
+  const Draw* draw = std::get_if<Draw>(&command);
+  const Lit* lit = draw ? std::get_if<Lit>(&draw->shading) : nullptr;
+  return lit && lit->at_vertices;
+}
+
+/// The oldest version that has all fields of the frame: what older readers can read stays theirs.
+std::uint32_t version_of(const Frame& frame) {
+  for (const Pass& pass : frame.passes())
+    if (std::any_of(pass.commands.begin(), pass.commands.end(), lights_at_vertices)) return 2;
+  return 1;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode_frame(const Frame& frame) {
-  Encoder encoder;
+  Encoder encoder(version_of(frame));
   encoder.passes(frame.passes());
   return encoder.file();
 }

@@ -1,6 +1,6 @@
 // The fields of a frame's commands in the order of the file, said once for both directions: `Io` is
 // the writer of frame_encode.cpp or the reader of frame_decode.cpp, and every field is named for
-// the reader's errors.
+// the reader's errors. Fields that a version has not got are left as they are.
 // A change here changes the format: docs/frame-format.md and its version follow.
 #pragma once
 
@@ -137,6 +137,7 @@ void fields(Io& io, Lit& lit) {
   io.flag("the diffuse flag", lit.diffuse);
   io.flag("the specular flag", lit.specular);
   io.flag("the two-sided flag", lit.two_sided);
+  if (io.version() >= 2) io.flag("the at-vertices flag", lit.at_vertices);
   io.floats("an eye position", lit.eye_world);
   io.floats("a world matrix", lit.world_from_model);
   io.floats("a normal matrix", lit.world_from_model_normal);

@@ -1,4 +1,5 @@
-// A recorded frame as bytes and back: the format "gnomon frame", version 1 (docs/frame-format.md).
+// A recorded frame as bytes and back: the format "gnomon frame", versions 1 and 2
+// (docs/frame-format.md).
 // Invariant: the bytes are a function of the frame's values alone, of no address and no machine;
 // what encode_frame wrote comes back from decode_frame to be encoded to the very same bytes (of
 // buffers that take at most kMaxFrameBufferBytes).
@@ -40,7 +41,8 @@ struct RecordedFrame {
 /// Most memory that all buffers of a decoded frame may take together, in bytes.
 inline constexpr std::uint64_t kMaxFrameBufferBytes = std::uint64_t{4} << 30;
 
-/// The frame's bytes. Arrays, textures and pictures of equal content are stored once.
+/// The frame's bytes, in the oldest version that has all of its fields. Arrays, textures and
+/// pictures of equal content are stored once.
 /// Precondition: what the frame borrows is there. Misuse: an array or a list of 2^32 - 1 or more.
 std::vector<std::uint8_t> encode_frame(const Frame& frame);
 

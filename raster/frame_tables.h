@@ -7,7 +7,8 @@
 namespace gnomon::raster {
 
 inline constexpr std::string_view kFrameMagic = "gnomon frame";
-inline constexpr std::uint32_t kFrameVersion = 1;
+/// The newest version. Version 2 has Lit::at_vertices, which is false in version 1.
+inline constexpr std::uint32_t kFrameVersion = 2;
 /// In an index's place: nothing is meant.
 inline constexpr std::uint32_t kNone = 0xffffffff;
 

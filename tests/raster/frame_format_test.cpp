@@ -79,7 +79,8 @@ void record_lookups(Frame& frame, Random& r, const Targets& targets, const Depth
     } else {
       Lit lit;
       lit.lights.resize(2);
-      lit.lights[0].shadow_map = random_lookup(r, map);
+      lit.at_vertices = r.chance(0.3f);
+      if (!lit.at_vertices) lit.lights[0].shadow_map = random_lookup(r, map);
       lit.eye_world = {0.0f, 0.0f, 3.0f};
       draw.shading = lit;
     }
@@ -212,6 +213,32 @@ TEST(FrameFormat, ATinyFrameHasTheseBytes) {
   EXPECT_EQ(encode_frame(tiny_recording().frame), expected);
 }
 
+TEST(FrameFormat, OnlyAFrameThatIsLitAtVerticesIsVersion2) {  // oracle: docs/frame-format.md
+  const auto mesh = std::make_shared<SharedMesh>();
+  const auto bytes_of_lit = [&](bool at_vertices) {
+    RecordedFrame out;
+    auto& color =
+        std::get<ColorBuffer>(out.buffers.emplace_back(std::in_place_type<ColorBuffer>, 4, 4));
+    out.frame.begin_pass("", {.color = &color});
+    out.frame.draw({.mesh = {mesh->positions, mesh->indices, mesh->normals},
+                    .shading = Lit{.at_vertices = at_vertices}});
+    return encode_frame(out.frame);
+  };
+  const auto lit_of = [](const RecordedFrame& got) {
+    return std::get<Lit>(std::get<Draw>(got.frame.passes()[0].commands[0]).shading);
+  };
+  const Bytes old = bytes_of_lit(false), now = bytes_of_lit(true);
+  EXPECT_EQ(old.at(12), 1);
+  EXPECT_EQ(now.at(12), 2);
+  EXPECT_EQ(now.size(), old.size() + 1);
+  EXPECT_FALSE(lit_of(decode_frame(old)).at_vertices);
+  EXPECT_TRUE(lit_of(decode_frame(now)).at_vertices);
+  // After the flag: eye, two matrices, texture.
+  Bytes flagless = now;
+  flagless.at(now.size() - (3 + 16 + 9 + 1) * 4 - 1) = 0;
+  EXPECT_EQ(encode_frame(decode_frame(flagless).frame), old);
+}
+
 TEST(FrameFormat,
      AnIndexBeyond16BitsWidensItsArray) {  // oracle: sizes, and the frame that was read
   const auto bytes_with = [](std::uint32_t last) {
@@ -318,7 +345,7 @@ TEST(FrameFormat, AnErrorSaysWhereAndWhatAndTheValue) {
   };
   EXPECT_EQ(error_of({}), "byte 0: the format's name takes 12 bytes, but 0 are left");
   EXPECT_EQ(with(3, 'x'), "byte 0: this does not begin with \"gnomon frame\"");
-  EXPECT_EQ(with(12, 9), "byte 12: the version is 9; version 1 can be read");
+  EXPECT_EQ(with(12, 9), "byte 12: the version is 9; versions 1 and 2 can be read");
   EXPECT_EQ(with(20, 3), "byte 20: a buffer's kind is 3, more than 2");
   EXPECT_EQ(with(21, 1), "byte 21: a buffer's format is 1, more than 0");
   EXPECT_EQ(with(23, 0x40), "byte 22: a buffer's width is 16387, but it can be 1 to 16384");
