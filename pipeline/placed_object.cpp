@@ -1,5 +1,6 @@
 #include "pipeline/placed_object.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -126,6 +127,8 @@ void draw_caster_depth(raster::Frame& frame, const PlacedObject& object,
 void draw_lit(raster::Frame& frame, const PlacedObject& object, const Scene& scene,
               const Camera& camera, const LightTerms& terms, const raster::State& state,
               int stencil_ref) {
+  const bool has_map = std::any_of(terms.shadow_maps.begin(), terms.shadow_maps.end(),
+                                   [](const auto& map) { return map.has_value(); });
   for (std::size_t i = 0; i < object.meshes.size(); ++i) {
     const Part& part = object.object->model->parts[i];
     raster::Lit lit;
@@ -140,6 +143,7 @@ void draw_lit(raster::Frame& frame, const PlacedObject& object, const Scene& sce
     lit.diffuse = terms.diffuse;
     lit.specular = terms.specular;
     lit.two_sided = part.two_sided;
+    lit.at_vertices = scene.vertex_lighting && !has_map;
     lit.eye_world = camera.eye_world;
     lit.world_from_model = object.object->world_from_model;
     lit.world_from_model_normal = object.world_from_model_normal;

@@ -62,8 +62,9 @@ void draw_depth(raster::Frame& frame, const PlacedObject& object, const raster::
 void draw_caster_depth(raster::Frame& frame, const PlacedObject& object,
                        const raster::State& state);
 
-/// Records the object's parts with lighting; the material's alpha counts as 1. The frame keeps the
-/// meshes.
+/// Records the object's parts with lighting; the material's alpha counts as 1. With
+/// Scene::vertex_lighting they are lit at vertices, unless one of the shadow maps is there: those
+/// terms are lit pixel by pixel. The frame keeps the meshes.
 void draw_lit(raster::Frame& frame, const PlacedObject& object, const Scene& scene,
               const Camera& camera, const LightTerms& terms, const raster::State& state,
               int stencil_ref = 0);

@@ -76,6 +76,9 @@ struct Scene {
   std::vector<Light> lights;
   /// Ambient light on virtual objects.
   glm::vec3 ambient{0.3f};
+  /// Light objects at their vertices, as OpenGL's fixed function does (raster::Lit::at_vertices),
+  /// wherever no shadow map scales a light; where one does, they stay lit pixel by pixel.
+  bool vertex_lighting = false;
 };
 
 /// A pinhole camera. Clip space is OpenGL's: the near plane is z = -w.
