@@ -41,6 +41,8 @@ class GnomonRunner final : public Runner {
  public:
   GnomonRunner(const Subject& subject, Method method, int threads)
       : subject_(subject), method_(method), threads_(threads), buffers_(subject.size) {
+    // As Mesa's fixed function does, so that both do the same work.
+    subject_.scene.vertex_lighting = true;
     pipeline::place_objects(subject_.scene, subject_.camera, topologies_);
     if (subject_.random_depth) load_random_depth(buffers_.depth);
   }
