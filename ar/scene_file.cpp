@@ -36,9 +36,10 @@ class SceneReader {
     const toml::table root = load_toml(scene_.file, kMaxSceneBytes, kSceneFormat);
     const TomlTable top(
         scene_.file, root, "",
-        {"format", "ambient", "camera", "detection", "dictionary", "tag", "tags_yaml", "body",
-         "group", "object", "light", "caster", "shadow", "differential", "filter"});
+        {"format", "ambient", "lighting", "camera", "detection", "dictionary", "tag", "tags_yaml",
+         "body", "group", "object", "light", "caster", "shadow", "differential", "filter"});
     if (const auto ambient = top.vector("ambient", 0.0, 1.0)) scene_.ambient = *ambient;
+    read_lighting(top);
     read_camera_table(top);
     for (const toml::table* t : top.tables("dictionary")) read_dictionary(*t);
     read_detection(top);
@@ -69,6 +70,13 @@ class SceneReader {
     std::string name = t.required("name", t.text("name"));
     if (!names.insert(name).second) t.fail("name", fmt::format("'{}' is used twice", name));
     return name;
+  }
+
+  void read_lighting(const TomlTable& top) {
+    const std::string lighting = top.text("lighting").value_or("pixel");
+    if (lighting != "pixel" && lighting != "vertex")
+      top.fail("lighting", fmt::format("'{}' is not one of pixel, vertex", lighting));
+    scene_.vertex_lighting = lighting == "vertex";
   }
 
   void read_camera_table(const TomlTable& top) {

@@ -125,6 +125,8 @@ struct SceneFile {
   std::vector<std::filesystem::path> light_models;
   std::vector<SceneCaster> casters;
   glm::vec3 ambient{0.3f};
+  /// pipeline::Scene::vertex_lighting.
+  bool vertex_lighting = false;
   ShadowSettings shadow;
   /// In place of shadow volumes, where the scene file has them.
   std::optional<DifferentialFile> differential;

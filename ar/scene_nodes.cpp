@@ -23,6 +23,7 @@ NodePointer find(const std::map<std::string, NodePointer>& nodes, const std::str
 SceneNodes::SceneNodes(const SceneFile& scene, const std::vector<ObjectModels>& models)
     : file_(one_line(scene.file.string())),
       ambient_(scene.ambient),
+      vertex_lighting_(scene.vertex_lighting),
       root_(pipeline::make_node("world")) {
   for (const SceneGroup& group : scene.groups) {
     const NodePointer node = pipeline::make_node(group.name, group.parent_from_group);
@@ -99,6 +100,7 @@ pipeline::Scene SceneNodes::scene() const {
   try {
     pipeline::Scene scene = pipeline::flatten(*root_);
     scene.ambient = ambient_;
+    scene.vertex_lighting = vertex_lighting_;
     return scene;
   } catch (const std::invalid_argument& error) {
     throw InputError(file_ + ": " + error.what());

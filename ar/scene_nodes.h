@@ -28,8 +28,8 @@ class SceneNodes {
   /// Names of the objects that hang on a body that is not seen.
   std::vector<std::string> left_out() const;
 
-  /// The graph flattened, with the scene file's ambient light. Throws InputError about [[caster]]
-  /// tables that contradict each other.
+  /// The graph flattened, with the scene file's ambient light and way of lighting. Throws
+  /// InputError about [[caster]] tables that contradict each other.
   pipeline::Scene scene() const;
 
  private:
@@ -38,6 +38,7 @@ class SceneNodes {
 
   std::string file_;
   glm::vec3 ambient_;
+  bool vertex_lighting_;
   pipeline::NodePointer root_;
   std::map<std::string, pipeline::NodePointer> bodies_, groups_, objects_, lights_;
 };

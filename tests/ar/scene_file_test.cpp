@@ -190,6 +190,19 @@ TEST(SceneFile, DefaultsAndSettings) {
   EXPECT_EQ(folder.read(kSmall + "[shadow]\nvolume = 2.5\n").shadow.volume, VolumeReach(2.5));
 }
 
+TEST(SceneFile, LightingIsPixelByPixelUnlessItIsAskedForAtVertices) {
+  const SceneFolder folder;
+  const auto lit_at_vertices = [&](const std::string& key) {
+    const SceneFile scene = folder.read(key + kSmall);
+    return SceneNodes(scene, load_models(scene)).scene().vertex_lighting;
+  };
+  EXPECT_FALSE(lit_at_vertices(""));
+  EXPECT_FALSE(lit_at_vertices("lighting = \"pixel\"\n"));
+  EXPECT_TRUE(lit_at_vertices("lighting = \"vertex\"\n"));
+  EXPECT_THAT(folder.message("lighting = \"phong\"\n" + kSmall),
+              HasSubstr("scene.toml:1: lighting: 'phong' is not one of pixel, vertex"));
+}
+
 struct Wrong {
   const char *from, *to, *message;
 };
