@@ -65,7 +65,7 @@ void print_json(const Options& options, const ar::SceneLight& light) {
   for (const auto& [name, value] : light.step_ms) ms[name] = value;
   const glm::dvec3 ratio = light.photograph_over_probe;
   const ordered_json line{{"out", options.out.string()},
-                          {"patches", light.scene.model.patches.size()},
+                          {"patches", light.scene.model.near_count()},
                           {"surfaces", light.scene.model.surfaces.size()},
                           {"from_photograph", light.from_photograph},
                           {"from_probe", light.from_probe},
@@ -83,7 +83,7 @@ void print_text(const Options& options, const ar::SceneLight& light) {
   std::cout << fmt::format(
       "{}: {} patches of {} surfaces: {} from the photograph, {} from the probe, {} filled; {} "
       "shine\n",
-      options.folder.string(), light.scene.model.patches.size(), light.scene.model.surfaces.size(),
+      options.folder.string(), light.scene.model.near_count(), light.scene.model.surfaces.size(),
       light.from_photograph, light.from_probe, light.filled, light.emitting);
   std::cout << fmt::format("photograph / probe where both see: {:.3f} {:.3f} {:.3f}\n", ratio.x,
                            ratio.y, ratio.z);

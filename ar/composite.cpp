@@ -186,6 +186,9 @@ Image composite(const PinholeView& view, const Image& photograph, const raster::
                 const pipeline::PictureFinish& finish, int threads) {
   raster::require(drawn.width() == view.width() && drawn.height() == view.height(),
                   "the drawing has the view's size");
+  raster::require(photograph.channels == 3 && photograph.width == view.photo_width() &&
+                      photograph.height == view.photo_height(),
+                  "the photograph has three channels and the camera's size");
   Image out = photograph;
   raster::for_each_chunk(static_cast<std::size_t>(out.height), kRows, threads,
                          [&](std::size_t first, std::size_t last) {

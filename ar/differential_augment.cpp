@@ -48,7 +48,8 @@ std::vector<std::uint32_t> visible_patches(const pipeline::LitScene& scene,
     }
   }
   std::vector<std::uint32_t> patches;
-  for (std::uint32_t i = 0; i < scene.model.near_count(); ++i) {
+  for (std::uint32_t i = 0, near = static_cast<std::uint32_t>(scene.model.near_count()); i < near;
+       ++i) {
     const auto& corners = scene.model.patches[i].vertices;
     if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return vertices[v]; }))
       patches.push_back(i);

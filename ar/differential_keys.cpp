@@ -51,8 +51,11 @@ DifferentialFile read_differential(const std::filesystem::path& file, const toml
     t.fail("map_size", "is a shadow map's: give mask = \"map\" too");
   settings.method.map_size = t.integer("map_size", 8, 4096).value_or(settings.method.map_size);
   settings.method.self_shadows = t.boolean("self_shadows").value_or(settings.method.self_shadows);
-  if (const auto triangles = t.integer("occluder_triangles", 0, 100'000'000))
+  if (const auto triangles = t.integer("occluder_triangles", 0, 100'000'000)) {
+    if (*triangles > 0 && *triangles < 4)
+      t.fail("occluder_triangles", "a closed surface has 4 triangles or more; 0 takes all");
     settings.occluder_triangles = static_cast<std::size_t>(*triangles);
+  }
   pipeline::LightPathOptions& light = settings.light;
   light.transfer.power_share =
       t.number("power_share", 0.0, 1.0).value_or(light.transfer.power_share);

@@ -161,7 +161,8 @@ class Reader {
   }
 
   void read_distant(const json& object, pipeline::PatchModel& model) const {
-    const std::size_t count = size(object, "distant_patches", 0, model.patches.size() - 1);
+    const std::size_t count =
+        size(object, "distant_patches", 0, std::min<std::size_t>(1, model.patches.size() - 1));
     for (std::size_t i = 0; i < count; ++i)
       model.patches[model.patches.size() - 1 - i].distant = true;
     const json& clear = member(object, "clear_surfaces");

@@ -172,15 +172,17 @@ class Work {
   }
 
   void make_patches() {
-    const int count = options_.patches > 0 ? options_.patches : capture_.patches;
+    const std::size_t most = pipeline::PatchExchange::kMostPatches - (capture_.sun ? 1 : 0);
+    const auto count = std::min(
+        static_cast<std::size_t>(options_.patches > 0 ? options_.patches : capture_.patches), most);
     try {
-      model() = pipeline::make_patches(model_scene_, static_cast<std::size_t>(count));
+      model() = pipeline::make_patches(model_scene_, count);
     } catch (const std::invalid_argument& error) {
       throw InputError(fmt::format("{}: {}", capture_.model.string(), error.what()));
     }
-    if (model().patches.size() > pipeline::PatchExchange::kMostPatches)
+    if (model().patches.size() > most)
       throw InputError(fmt::format("{}: {} triangles, of at most {}", capture_.model.string(),
-                                   model().patches.size(), pipeline::PatchExchange::kMostPatches));
+                                   model().patches.size(), most));
     add_sun();
     visibility_.emplace(model());
     known_.assign(model().patches.size(), false);
@@ -307,8 +309,9 @@ class Work {
     Balanced balanced = balance_patches(model(), exchange, input, options_.threads);
     result_.scene.radiance = std::move(balanced.radiance);
     result_.scene.reflectance = std::move(balanced.reflectance);
-    result_.emitting =
-        static_cast<std::size_t>(std::count(balanced.emits.begin(), balanced.emits.end(), true));
+    const auto near_end =
+        balanced.emits.begin() + static_cast<std::ptrdiff_t>(model().near_count());
+    result_.emitting = static_cast<std::size_t>(std::count(balanced.emits.begin(), near_end, true));
   }
 
   void set_sun(const pipeline::PatchExchange& exchange, BalanceInput& input) {

@@ -17,7 +17,7 @@ namespace {
 constexpr int kRays = 16;
 /// Of a patch in the sun: where it grazes, a small error of the model is a large one of the light.
 constexpr double kLeastCosine = 0.2;
-/// What may be more than the mean of unlit neighbours by a lamp's light is no reflectance.
+/// A patch in the shade that gives more than this part of what it gets shines by itself.
 constexpr double kBrightest = 1.0;
 
 struct Shade {
@@ -42,7 +42,7 @@ std::optional<glm::dvec3> find_sun_irradiance(const pipeline::PatchModel& model,
   std::vector<double> cosines(model.patches.size(), 0.0);
   std::vector<Shade> shade(model.surfaces.size());
   std::vector<std::size_t> lit;
-  for (std::size_t i = 0; i < model.near_count(); ++i) {
+  for (std::size_t i = 0, near_count = model.near_count(); i < near_count; ++i) {
     const pipeline::Patch& patch = model.patches[i];
     if (!input.known[i]) continue;
     const double cosine = -glm::dot(patch.normal, sun.normal);

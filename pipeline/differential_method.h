@@ -47,7 +47,6 @@ inline constexpr const char* kBackground = "background image";
 inline constexpr const char* kWhite = "white, which shares are taken of";
 inline constexpr const char* kModel = "scene model into the depth buffer";
 inline constexpr const char* kObjects = "synthetic objects";
-inline constexpr const char* kMap = "shadow map: source ";
 inline constexpr const char* kVolumes = "shadow volumes: source ";
 inline constexpr const char* kSubtract = "subtract source ";
 }  // namespace differential_label

@@ -79,7 +79,9 @@ struct DifferentialReference::World {
     }
     for (const Object& object : virtual_scene.objects) {
       if (object.casts) casters.push_back(sphere_of(bounds_of_caster(object)));
-      diffuse.emplace_back(linear_color(object.model->parts.at(0).material.diffuse));
+      diffuse.emplace_back(object.model->parts.empty()
+                               ? glm::vec3(0.0f)
+                               : linear_color(object.model->parts[0].material.diffuse));
     }
   }
 
@@ -107,7 +109,7 @@ struct DifferentialReference::World {
               return false;
             ++hidden;
             const RayHit hit = glow.empty() ? RayHit{} : objects.trace({from, to - from});
-            if (hit.hit && hit.distance < 1.0)
+            if (hit.hit && hit.distance < 1.0 && virtual_scene.objects[hit.object].casts)
               returned += glm::dvec3(glow[hit.object][hit.triangle]);
             return true;
           });

@@ -166,9 +166,8 @@ class Takes {
       }
       const glm::dvec3 light(paths_.vertex_radiance[vertex]);
       if (options_.by_share) {
-        const glm::vec3 whole = inverse(light);
         for (std::size_t j = 0; j < shadows_.size(); ++j)
-          shadows_[j].colors[i] = glm::vec4(transfers[j] * whole + dither(j), 0.0f);
+          shadows_[j].colors[i] = glm::vec4(share(transfers[j], light) + dither(j), 0.0f);
         continue;
       }
       if (options_.precision == ShadowPrecision::radiance) {
@@ -182,11 +181,12 @@ class Takes {
     }
   }
 
-  /// 0 where there is nothing to take a share of.
-  static glm::vec3 inverse(const glm::dvec3& whole) {
+  /// At most all of it, and 0 where there is nothing to take a share of.
+  static glm::vec3 share(const glm::vec3& taken, const glm::dvec3& whole) {
     glm::vec3 result(0.0f);
     for (int c = 0; c < 3; ++c)
-      if (whole[c] > 0.0) result[c] = static_cast<float>(1.0 / whole[c]);
+      if (whole[c] > 0.0)
+        result[c] = static_cast<float>(std::min(static_cast<double>(taken[c]) / whole[c], 1.0));
     return result;
   }
 
@@ -243,12 +243,12 @@ class Pyramid {
   /// Corners of the part of a triangle that is inside; of its own corners' places in the world.
   void add_inside(const std::array<glm::dvec3, 3>& local, const std::array<glm::dvec3, 3>& world,
                   std::vector<glm::dvec3>& corners) const {
-    // At most one more corner a side.
     struct Corner {
       glm::dvec3 world;
       std::array<double, 5> depths;
     };
-    std::array<Corner, 8> polygon, next;
+    // A convex polygon gets one more corner a side, and rounding never twice as many.
+    std::array<Corner, 96> polygon, next;
     std::size_t count = 3;
     for (std::size_t k = 0; k < 3; ++k) polygon[k] = {world[k], depths(local[k])};
     for (std::size_t side = 0; side < 5 && count > 0; ++side) {

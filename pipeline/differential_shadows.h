@@ -21,7 +21,8 @@
 
 namespace gnomon::pipeline {
 
-/// What is subtracted, and how it is rounded.
+/// What is subtracted, and how it is rounded. By share (ShadowTakeOptions) it is a part of what the
+/// photograph shows, in steps of 1/255 or in floats; the values below are those of amounts.
 enum class ShadowPrecision : std::uint8_t {
   /// Values of the 8-bit picture, each source's rounded when it is subtracted (the paper).
   bytes,
@@ -95,7 +96,7 @@ struct ShadowCaster {
   glm::dvec3 reflectance{0.0};
 };
 
-/// `light` is what arrives at the casters. Memory of an earlier frame's result is used again.
+/// `light` is what arrives at the casters.
 void find_shadows(const LitScene& scene, const LightPaths& paths, const OccludedLight& occluded,
                   std::span<const ShadowCaster> casters, const IrradianceVolume& light,
                   const ShadowTakeOptions& options, DifferentialShadows& result);

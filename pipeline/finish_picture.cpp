@@ -10,7 +10,8 @@ namespace gnomon::pipeline {
 namespace {
 
 std::uint8_t nearest(double value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+  // NaN is not more than 0.
+  return value > 0.0 ? static_cast<std::uint8_t>(std::lround(std::min(value, 255.0))) : 0;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "pipeline/bounds.h"
 #include "pipeline/displaced_caster.h"
 #include "pipeline/intensity_transfer.h"
 #include "raster/executor.h"
@@ -30,7 +31,7 @@ struct PointSource {
 /// A caster's corners in the world, and how far before a plane they count.
 struct CasterPoints {
   std::vector<glm::dvec3> points;
-  double least = 0.0;
+  double least_m = 0.0;
 };
 
 CasterPoints points_of(const PlacedObject& object) {
@@ -42,23 +43,23 @@ CasterPoints points_of(const PlacedObject& object) {
       std::max({glm::length(world[0]), glm::length(world[1]), glm::length(world[2])});
   const double size = scale * static_cast<double>(glm::length(glm::vec3(
                                   object.caster_topology->high - object.caster_topology->low)));
-  caster.least = kFlat * size;
+  caster.least_m = kFlat * size;
   if (is_displaced(*object.object))
-    caster.least += scale * static_cast<double>(object.object->shadow_displace);
+    caster.least_m += scale * static_cast<double>(object.object->shadow_displace);
   return caster;
 }
 
 bool any_before(const glm::dvec3& corner, const glm::dvec3& normal,
                 std::span<const CasterPoints> casters) {
   return std::ranges::any_of(casters, [&](const CasterPoints& caster) {
-    const double from = glm::dot(normal, corner) + caster.least;
+    const double from = glm::dot(normal, corner) + caster.least_m;
     return std::ranges::any_of(caster.points,
                                [&](const glm::dvec3& p) { return glm::dot(normal, p) > from; });
   });
 }
 
-/// The mesh's triangles that may be seen from the eye (of a closed one those that face it) and may
-/// be in a shadow: on either side, where either is seen.
+/// The mesh's triangles that may be in a shadow, and that may be seen from the eye: those that face
+/// it, of a closed mesh whose front is outside and that the eye is outside of.
 std::vector<std::uint32_t> shadowed_triangles(const PlacedObject& object, const Mesh& mesh,
                                               const glm::dvec3& eye,
                                               std::span<const CasterPoints> casters, int threads) {
@@ -66,9 +67,23 @@ std::vector<std::uint32_t> shadowed_triangles(const PlacedObject& object, const 
   const glm::dmat4 world(object.object->world_from_model);
   std::vector<glm::dvec3> positions;
   positions.reserve(mesh.positions.size());
-  for (const glm::vec4& p : mesh.positions) positions.emplace_back(world * glm::dvec4(p));
+  Bounds box;
+  for (const glm::vec4& p : mesh.positions) {
+    positions.emplace_back(world * glm::dvec4(p));
+    box.add(positions.back());
+  }
   const double side = object.front_face == raster::FrontFace::ccw ? 1.0 : -1.0;
   const std::size_t count = mesh.indices.size() / 3;
+  double volume = 0.0;
+  for (std::size_t t = 0; t < count; ++t) {
+    const std::uint32_t* i = &mesh.indices[3 * t];
+    const glm::dvec3 origin = box.center();
+    volume += side * glm::dot(positions[i[0]] - origin,
+                              glm::cross(positions[i[1]] - origin, positions[i[2]] - origin));
+  }
+  Bounds at_eye;
+  at_eye.add(eye);
+  const bool front_is_seen = volume > 0.0 && !box.meets(at_eye);
   std::vector<std::uint8_t> wanted(count);
   constexpr std::size_t kChunk = 128;
   raster::for_each_chunk(count, kChunk, threads, [&](std::size_t first, std::size_t last) {
@@ -77,8 +92,10 @@ std::vector<std::uint32_t> shadowed_triangles(const PlacedObject& object, const 
       const glm::dvec3 &a = positions[i[0]], &b = positions[i[1]], &c = positions[i[2]];
       const glm::dvec3 normal = glm::cross(b - a, c - a) * side, to = eye - a;
       const double length = glm::length(normal);
-      wanted[t] = glm::dot(normal, to) > kLeastCosine * length * glm::length(to) &&
-                  any_before(a, normal / length, casters);
+      const bool faces = glm::dot(normal, to) > kLeastCosine * length * glm::length(to);
+      wanted[t] = front_is_seen ? faces && any_before(a, normal / length, casters)
+                                : any_before(a, normal / length, casters) ||
+                                      any_before(a, -normal / length, casters);
     }
   });
   std::vector<std::uint32_t> kept;

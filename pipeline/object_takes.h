@@ -28,9 +28,9 @@ struct MeshTake {
 };
 
 struct ObjectTakes {
-  /// One a mesh of each object in turn: those of its triangles that the eye may see, and that have
-  /// a part of a caster before them. The same for all shadows, so that their draws share one
-  /// set-up.
+  /// One a mesh of each object in turn: of a closed one those triangles that the eye may see and
+  /// that have a part of a caster before them, of any other all. The same for all shadows, so that
+  /// their draws share one set-up.
   std::vector<std::vector<std::uint32_t>> indices;
   /// One a shadow, and in it one a mesh.
   std::vector<std::vector<MeshTake>> of_shadow;

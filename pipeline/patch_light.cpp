@@ -91,11 +91,13 @@ struct PatchVisibility::World {
     device = rtcNewDevice(nullptr);
     if (!device) throw std::runtime_error("Embree cannot start");
     const std::size_t near = model.near_count();
+    std::vector<bool> clear(model.surfaces.size(), false);
+    for (const std::uint32_t surface : model.clear_surfaces) clear[surface] = true;
     std::vector<std::uint32_t> all, unclear;
     for (std::size_t i = 0; i < near; ++i) {
       const Patch& patch = model.patches[i];
       all.insert(all.end(), patch.vertices.begin(), patch.vertices.end());
-      if (std::ranges::find(model.clear_surfaces, patch.surface) == model.clear_surfaces.end())
+      if (!clear[patch.surface])
         unclear.insert(unclear.end(), patch.vertices.begin(), patch.vertices.end());
     }
     scene = build(all);

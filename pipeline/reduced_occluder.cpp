@@ -23,6 +23,7 @@ ReducedOccluder reduce_occluder(const std::shared_ptr<const Model>& model, std::
   indices.resize(meshopt_simplify(indices.data(), topology.indices.data(), topology.indices.size(),
                                   positions.data(), topology.positions.size(), 3 * sizeof(float),
                                   3 * triangles, std::numeric_limits<float>::max(), 0, nullptr));
+  if (indices.empty()) return {model, 0.0};
   Part part;
   std::vector<glm::vec4>& kept = part.mesh.positions;
   kept.resize(topology.positions.size());

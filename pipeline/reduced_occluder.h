@@ -21,8 +21,9 @@ struct ReducedOccluder {
 /// Edges are collapsed by meshoptimizer (Garland and Heckbert 1997) until `triangles` are left, or
 /// no more can be without tearing the surface. Parts become one; borders may shrink and faults
 /// arise, so it is for maps and volumes that take any mesh. Normals, colours and textures are left
-/// out. A model that has so few already comes back itself, with an error of 0.
-/// Preconditions: triangles is positive; every position is finite; indices are valid.
+/// out. A model that has so few already, or of which nothing would be left, comes back itself, with
+/// an error of 0. Preconditions: triangles is positive; every position is finite; indices are
+/// valid.
 ReducedOccluder reduce_occluder(const std::shared_ptr<const Model>& model, std::size_t triangles);
 
 /// Reduces models once and keeps them from frame to frame.

@@ -20,7 +20,7 @@ namespace {
 /// millimetre a metre of the scene.
 constexpr double kDiagonals = 200.0;
 
-double solid_angle() { return 2.0 * std::numbers::pi * (1.0 - std::cos(kSunRadius)); }
+double solid_angle() { return 2.0 * std::numbers::pi * (1.0 - std::cos(kSunRadiusRad)); }
 
 }  // namespace
 

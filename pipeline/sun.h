@@ -13,7 +13,7 @@
 namespace gnomon::pipeline {
 
 /// Half the angle that the sun is seen under, in radians.
-inline constexpr double kSunRadius = 0.00465;
+inline constexpr double kSunRadiusRad = 0.00465;
 
 /// Appends the sun's patch, on a surface of its own, "sun". `direction` points towards it and has
 /// unit length. It shines through the surfaces `clear` (panes that are in the model because they

@@ -2,7 +2,8 @@
 // Usage: measure_differential LIT_SCENE CAPTURE TRUTH [OUT]   (folders as in differential_truth.h)
 // Prints tables. With OUT: pictures of every setting, references (those that lie there already are
 // read and not made again), and contact.png: a row a photograph, of photograph, 50 passes,
-// reference, and the FLIP errors of these two.
+// reference, and the FLIP errors of these two. A reference belongs to its lit scene: take another
+// OUT for another one.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
