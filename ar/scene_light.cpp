@@ -14,6 +14,7 @@
 #include "ar/capture_model.h"
 #include "ar/error.h"
 #include "ar/image_file.h"
+#include "ar/median.h"
 #include "ar/merge_radiance.h"
 #include "ar/patch_balance.h"
 #include "ar/photograph_radiance.h"
@@ -39,13 +40,6 @@ constexpr double kRimPx = 1.5;
 /// Median difference of the photograph from its brackets, in pixel values, that means another
 /// exposure time and not noise.
 constexpr double kOtherTime = 12.0;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 void scale(FloatImage& picture, const glm::dvec3& factor) {
   for (std::size_t i = 0; i < picture.pixels.size(); ++i)

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "ar/median.h"
 #include "pipeline/source_set.h"
 #include "pipeline/sun.h"
 
@@ -23,12 +25,6 @@ constexpr double kBrightest = 1.0;
 struct Shade {
   glm::dvec3 given{0.0}, received{0.0};
 };
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -77,7 +73,7 @@ std::optional<glm::dvec3> find_sun_irradiance(const pipeline::PatchModel& model,
   glm::dvec3 irradiance(0.0);
   for (std::size_t c = 0; c < 3; ++c) {
     if (found[c].empty()) return std::nullopt;
-    irradiance[static_cast<int>(c)] = std::max(0.0, median(found[c]));
+    irradiance[static_cast<int>(c)] = std::max(0.0, median(std::move(found[c])));
   }
   return irradiance;
 }
