@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "pipeline/embree_ray.h"
+#include "pipeline/embree_triangles.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -100,8 +101,11 @@ struct PatchVisibility::World {
       if (!clear[patch.surface])
         unclear.insert(unclear.end(), patch.vertices.begin(), patch.vertices.end());
     }
-    scene = build(all);
-    if (near < model.patches.size()) opaque = build(unclear);
+    std::vector<glm::vec3> corners;
+    corners.reserve(model.vertices.size());
+    for (const PatchVertex& vertex : model.vertices) corners.push_back(vertex.position);
+    scene = build(corners, all);
+    if (near < model.patches.size()) opaque = build(corners, unclear);
   }
   ~World() {
     rtcReleaseScene(scene);
@@ -111,24 +115,12 @@ struct PatchVisibility::World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  RTCScene build(const std::vector<std::uint32_t>& triangles) const {
+  RTCScene build(std::span<const glm::vec3> corners,
+                 std::span<const std::uint32_t> triangles) const {
     RTCScene built = rtcNewScene(device);
     rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
     if (!triangles.empty()) {
-      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-      auto* corners = static_cast<float*>(
-          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                  3 * sizeof(float), model.vertices.size()));
-      auto* indices = static_cast<std::uint32_t*>(
-          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                  3 * sizeof(std::uint32_t), triangles.size() / 3));
-      for (const PatchVertex& vertex : model.vertices) {
-        *corners++ = vertex.position.x;
-        *corners++ = vertex.position.y;
-        *corners++ = vertex.position.z;
-      }
-      std::ranges::copy(triangles, indices);
-      rtcCommitGeometry(geometry);
+      RTCGeometry geometry = make_triangles(device, corners, triangles);
       rtcAttachGeometry(built, geometry);
       rtcReleaseGeometry(geometry);
     }

@@ -12,6 +12,7 @@
 #include <glm/matrix.hpp>
 
 #include "pipeline/embree_ray.h"
+#include "pipeline/embree_triangles.h"
 #include "raster/check.h"
 
 namespace gnomon::pipeline {
@@ -101,20 +102,7 @@ struct RayReference::World {
       const Triangles& triangles = casters_only && body.caster ? *body.caster : body.seen;
       if (!belongs(body, among) || (casters_only && !body.casts) || triangles.indices.empty())
         continue;
-      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-      auto* corners = static_cast<float*>(
-          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                  3 * sizeof(float), triangles.corners.size()));
-      auto* indices = static_cast<std::uint32_t*>(
-          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                  3 * sizeof(std::uint32_t), triangles.indices.size() / 3));
-      for (const glm::vec3& p : triangles.corners) {
-        *corners++ = p.x;
-        *corners++ = p.y;
-        *corners++ = p.z;
-      }
-      std::copy(triangles.indices.begin(), triangles.indices.end(), indices);
-      rtcCommitGeometry(geometry);
+      RTCGeometry geometry = make_triangles(device, triangles.corners, triangles.indices);
       rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(i));
       rtcReleaseGeometry(geometry);
     }
