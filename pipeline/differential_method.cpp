@@ -85,6 +85,13 @@ class Window {
   bool all_ = false;
 };
 
+/// Where receivers can be in the shadow.
+Window reach_of(const SourceShadow& shadow, const Camera& camera) {
+  Window window(camera);
+  for (const glm::dvec3& corner : shadow.reach) window.add(corner);
+  return window;
+}
+
 std::string numbered(const char* label, std::size_t number) {
   return label + std::to_string(number);
 }
@@ -202,8 +209,7 @@ void DifferentialMethod::count(raster::Frame& frame, std::size_t number, const C
                                const raster::Targets& targets, const DifferentialOptions& options) {
   const SourceShadow& shadow = shadows_.shadows[number];
   frame.begin_pass(numbered(differential_label::kVolumes, number), targets);
-  Window seen(camera);
-  for (const glm::dvec3& corner : shadow.reach) seen.add(corner);
+  Window seen = reach_of(shadow, camera);
   std::size_t mesh = 0;
   for (std::size_t i = 0; i < placed_.size() && options.self_shadows; ++i) {
     bool takes = false;
@@ -234,10 +240,8 @@ void DifferentialMethod::subtract(raster::Frame& frame, std::size_t number, cons
   raster::State state = drawn_again();
   if (!map) state.stencil = raster::StencilState::both({.func = raster::CompareFunc::not_equal});
   if (!shadow.indices.empty()) {
-    Window reached(camera);
-    for (const glm::dvec3& corner : shadow.reach) reached.add(corner);
     raster::State cut = state;
-    cut.scissor = reached.rect();
+    cut.scissor = reach_of(shadow, camera).rect();
     frame.draw({.state = cut,
                 .mesh = {shadows_.positions, shadow.indices, {}, shadow.colors, {}},
                 .clip_from_model = camera.clip_from_world,
