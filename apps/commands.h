@@ -14,6 +14,9 @@ void add_ar(CLI::App& program);
 /// gnomon capture FOLDER: the light of a real scene from photographs.
 void add_capture(CLI::App& program);
 
+/// gnomon chart: time against error, every method and setting.
+void add_chart(CLI::App& program);
+
 /// gnomon compare A B: how much two pictures differ.
 void add_compare(CLI::App& program);
 

@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
       "Examples:\n"
       "  gnomon ar scene.toml --image photograph.png --out out --steps\n"
       "  gnomon capture examples/soft --out soft.lit\n"
+      "  gnomon chart --out out\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
       "  gnomon mesh check model.glb\n"
       "  gnomon render scene.toml --out out\n"
@@ -45,6 +46,7 @@ int run(int argc, char** argv) {
       "  gnomon COMMAND --help");
   gnomon::apps::add_ar(program);
   gnomon::apps::add_capture(program);
+  gnomon::apps::add_chart(program);
   gnomon::apps::add_compare(program);
   gnomon::apps::add_golden(program);
   gnomon::apps::add_mesh(program);

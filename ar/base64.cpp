@@ -68,6 +68,8 @@ std::string base64_from_integers(std::span<const std::uint32_t> values) {
   return encode(bytes);
 }
 
+std::string base64_from_bytes(std::span<const std::uint8_t> bytes) { return encode(bytes); }
+
 std::string base64_from_floats(std::span<const float> values) {
   std::vector<std::uint32_t> bits;
   bits.reserve(values.size());

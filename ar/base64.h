@@ -10,6 +10,7 @@
 
 namespace gnomon::ar {
 
+std::string base64_from_bytes(std::span<const std::uint8_t> bytes);
 std::string base64_from_floats(std::span<const float> values);
 std::string base64_from_integers(std::span<const std::uint32_t> values);
 

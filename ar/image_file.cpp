@@ -223,23 +223,41 @@ Image to_rgb(const Image& image) {
   return {image.width, image.height, 3, pick(image.pixels, image.channels, channels)};
 }
 
-std::vector<std::uint8_t> encode_png(const Image& image, std::string_view name) {
+namespace {
+
+/// Encoded in memory: OpenImageIO does not say when a disk is full.
+std::vector<std::uint8_t> encode(const Image& image, const char* format, const ImageSpec& spec,
+                                 std::string_view name) {
   raster::require(image.width >= 1 && image.height >= 1 &&
-                      (image.channels == 1 || image.channels == 3 || image.channels == 4) &&
                       image.pixels.size() ==
                           static_cast<std::size_t>(image.width) * image.height * image.channels,
-                  "a picture's pixels fit its size and its 1, 3 or 4 channels");
-  const auto output = OIIO::ImageOutput::create("png");
+                  "a picture's pixels fit its size");
+  const auto output = OIIO::ImageOutput::create(format);
   if (!output) fail(name, OIIO::geterror());
-  ImageSpec spec(image.width, image.height, image.channels, TypeDesc::UINT8);
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  // Encoded in memory: OpenImageIO does not say when a disk is full.
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
-  if (!output->set_ioproxy(&memory) || !output->open("picture.png", spec) ||
+  if (!output->set_ioproxy(&memory) || !output->open(std::string("picture.") + format, spec) ||
       !output->write_image(TypeDesc::UINT8, image.pixels.data()) || !output->close())
     fail(name, fmt::format("cannot be written: {}", output->geterror()));
   return bytes;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_png(const Image& image, std::string_view name) {
+  raster::require(image.channels == 1 || image.channels == 3 || image.channels == 4,
+                  "a PNG has 1, 3 or 4 channels");
+  ImageSpec spec(image.width, image.height, image.channels, TypeDesc::UINT8);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  return encode(image, "png", spec, name);
+}
+
+std::vector<std::uint8_t> encode_jpeg(const Image& image, int quality, std::string_view name) {
+  raster::require(image.channels == 1 || image.channels == 3, "a JPEG has 1 or 3 channels");
+  raster::require(quality >= 1 && quality <= 100, "a JPEG's quality is 1 to 100");
+  ImageSpec spec(image.width, image.height, image.channels, TypeDesc::UINT8);
+  spec.attribute("Compression", fmt::format("jpeg:{}", quality));
+  return encode(image, "jpeg", spec, name);
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) {

@@ -54,6 +54,10 @@ Image to_rgb(const Image& image);
 /// Precondition: the picture is not empty and its pixels fit its size.
 std::vector<std::uint8_t> encode_png(const Image& image, std::string_view name);
 
+/// The bytes of a JPEG file of that quality, 1 to 100; for looking at, since its pixels are only
+/// near. Otherwise as encode_png. Precondition: 1 or 3 channels.
+std::vector<std::uint8_t> encode_jpeg(const Image& image, int quality, std::string_view name);
+
 /// Writes an 8-bit PNG beside `path`, then renames it. Throws InputError if it cannot be written.
 /// Precondition: the picture is not empty and its pixels fit its size.
 void write_png(const std::filesystem::path& path, const Image& image);

@@ -50,6 +50,7 @@ class GeneralMethod {
     return {.method = options_.method,
             .extrusion = options_.extrusion,
             .all_caps = options_.all_caps,
+            .classical = options_.classical,
             .geometry = options_.geometry,
             .counts = options_.appendix_letter ? Counts::everywhere : options_.counts,
             .view = View{camera_.clip_from_world, targets_.width(), targets_.height(),

@@ -20,6 +20,8 @@ struct GeneralOptions {
   VolumeGeometry geometry = VolumeGeometry::silhouettes;
   /// As VolumeOptions::all_caps.
   bool all_caps = false;
+  /// As VolumeOptions::classical: wrong for meshes that are not closed, for comparison.
+  bool classical = false;
   /// With at_receivers the picture is the same and the stencil may differ. Saturating counts
   /// (appendix_letter) depend on what else is counted: they are always taken everywhere.
   Counts counts = Counts::everywhere;

@@ -1,0 +1,96 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "apps/commands.h"
+#include "apps/output_folder.h"
+#include "apps/progress.h"
+#include "apps/study/chart.h"
+#include "apps/study/generated_views.h"
+#include "apps/study/gnuplot.h"
+#include "apps/study/ray_case.h"
+
+namespace gnomon::apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+  std::vector<fs::path> scenes;
+  fs::path out;
+  std::string shard = "1/1";
+  bool merge = false;
+  int frames = 11, threads = 0;
+};
+
+constexpr int kWidth = 640, kHeight = 480;
+
+std::vector<std::unique_ptr<study::ChartCase>> cases_of(const Options& options) {
+  std::vector<std::unique_ptr<study::ChartCase>> cases;
+  for (study::View& view : study::generated_views(kWidth, kHeight))
+    cases.push_back(std::make_unique<study::RayCase>(std::move(view), options.threads));
+  return cases;
+}
+
+void say_written(const fs::path& out, const study::ChartPart& whole) {
+  std::cout << fmt::format("{} points; wrote {}\n", whole.points.size(),
+                           (out / "chart.html").string());
+}
+
+void chart(const Options& options) {
+  const study::Shard shard = study::parse_shard("--shard", options.shard);
+  check_folder(options.out);
+  study::require_gnuplot();
+  if (options.merge) return say_written(options.out, study::merge_chart(options.out));
+  const auto cases = cases_of(options);
+  study::ChartPart part;
+  {
+    const auto jobs = study::jobs_of(cases, shard);
+    const Progress progress("setting", static_cast<std::int64_t>(jobs));
+    part = study::run_chart(cases, shard, options.frames, options.out, [&](std::size_t done) {
+      progress.show(static_cast<std::int64_t>(done));
+    });
+  }
+  if (!shard.is_whole()) {
+    std::cout << fmt::format("part {} of {}: {} points of {}\n", shard.number, shard.count,
+                             part.points.size(), part.jobs);
+    return;
+  }
+  study::write_chart(options.out, part);
+  say_written(options.out, part);
+}
+
+}  // namespace
+
+void add_chart(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "chart", "Chart time against error: every shadow method and setting on every scene");
+  command->add_option("--out", options->out, "Folder for the results")->required();
+  command
+      ->add_option("--frames", options->frames,
+                   "Frames a setting that are timed (0: errors only, the same on every machine)")
+      ->check(CLI::Range(0, 10'000))
+      ->capture_default_str();
+  command->add_option("--shard", options->shard,
+                      "Run part I of N of the jobs (I/N), for a scheduler; --merge when all ran");
+  command->add_flag("--merge", options->merge, "Put the parts that lie in the folder together");
+  command->add_option("--threads", options->threads, "Threads (0: all of the machine)")
+      ->check(CLI::Range(0, 256));
+  command->footer(
+      "Writes chart.html (one file, no network needed), chart.svg, chart.csv, chart.json and "
+      "pictures/.\n"
+      "Examples:\n"
+      "  gnomon chart --out out\n"
+      "  gnomon chart --out out --shard 2/8      # on each of eight machines, then\n"
+      "  gnomon chart --out out --merge");
+  command->callback([options] { chart(*options); });
+}
+
+}  // namespace gnomon::apps

@@ -1,0 +1,135 @@
+#include "apps/study/chart_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/study/part_file.h"
+#include "ar/error.h"
+#include "ar/median.h"
+
+namespace gnomon::apps::study {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json to_json(const ChartPoint& point) {
+  ordered_json out{{"job", point.job},       {"scene", point.scene},
+                   {"family", point.family}, {"method", point.method},
+                   {"oracle", point.oracle}, {"errors", ordered_json::array()}};
+  for (const auto& [name, value] : point.errors) out["errors"].push_back({name, value});
+  if (point.times.frames > 0)
+    out["ms"] = {{"frames", point.times.frames},
+                 {"median", point.times.median_ms},
+                 {"low", point.times.low_ms},
+                 {"high", point.times.high_ms}};
+  if (!point.picture.empty()) out["picture"] = point.picture;
+  if (!point.difference.empty()) out["difference"] = point.difference;
+  return out;
+}
+
+double finite_number(const json& value) {
+  const double number = value.get<double>();
+  if (!std::isfinite(number) || number < 0.0)
+    throw ar::InputError(fmt::format("{} is no error or time", value.dump()));
+  return number;
+}
+
+std::string picture_name(const json& point, const char* key) {
+  const std::string name = point.value(key, std::string());
+  if (!name.empty() && !is_plain_name(name))
+    throw ar::InputError(fmt::format("{}: '{}' is no plain file name", key, name.substr(0, 80)));
+  return name;
+}
+
+ChartPoint point_of(const json& in, std::size_t jobs) {
+  ChartPoint point{.job = in.at("job").get<std::size_t>(),
+                   .scene = in.at("scene").get<std::string>(),
+                   .family = in.at("family").get<std::string>(),
+                   .method = in.at("method").get<std::string>(),
+                   .oracle = in.at("oracle").get<std::string>(),
+                   .picture = picture_name(in, "picture"),
+                   .difference = picture_name(in, "difference")};
+  if (point.job >= jobs) throw ar::InputError(fmt::format("there is no job {}", point.job));
+  for (const json& error : in.at("errors"))
+    point.errors.emplace_back(error.at(0).get<std::string>(), finite_number(error.at(1)));
+  if (in.contains("ms")) {
+    const json& ms = in.at("ms");
+    point.times = {ms.at("frames").get<int>(), finite_number(ms.at("median")),
+                   finite_number(ms.at("low")), finite_number(ms.at("high"))};
+  }
+  return point;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+}  // namespace
+
+Times times_of(std::vector<double> ms) {
+  if (ms.empty()) return {};
+  const auto [low, high] = std::ranges::minmax_element(ms);
+  return {static_cast<int>(ms.size()), ar::median(ms), *low, *high};
+}
+
+void write_chart_part(const std::filesystem::path& file, const ChartPart& part) {
+  ordered_json points = ordered_json::array();
+  for (const ChartPoint& point : part.points) points.push_back(to_json(point));
+  write_part(file, {{"format", kChartFormat},
+                    {"shard", {part.shard.number, part.shard.count}},
+                    {"jobs", part.jobs},
+                    {"points", points}});
+}
+
+ChartPart read_chart_part(const std::filesystem::path& file) {
+  ChartPart part;
+  read_part(file, kChartFormat, [&](const json& document) {
+    const json& shard = document.at("shard");
+    part.shard = {shard.at(0).get<std::size_t>(), shard.at(1).get<std::size_t>()};
+    part.jobs = document.at("jobs").get<std::size_t>();
+    for (const json& point : document.at("points"))
+      part.points.push_back(point_of(point, part.jobs));
+  });
+  return part;
+}
+
+ChartPart merge_chart_parts(std::span<const ChartPart> parts) {
+  ChartPart whole;
+  if (!parts.empty()) whole.jobs = parts.front().jobs;
+  for (const ChartPart& part : parts) {
+    if (part.jobs != whole.jobs)
+      throw ar::InputError(fmt::format(
+          "parts of runs with {} and with {} jobs do not belong together", whole.jobs, part.jobs));
+    whole.points.insert(whole.points.end(), part.points.begin(), part.points.end());
+  }
+  require_every_job(whole.jobs, whole.points.size(),
+                    [&](std::size_t i) { return whole.points[i].job; });
+  std::ranges::sort(whole.points, {}, &ChartPoint::job);
+  return whole;
+}
+
+std::string chart_csv(const ChartPart& part) {
+  std::string out =
+      "scene,family,method,oracle,error,value,median_ms,low_ms,high_ms,frames,picture,difference\n";
+  for (const ChartPoint& point : part.points) {
+    const std::string times =
+        point.times.frames > 0
+            ? fmt::format("{},{},{},{}", point.times.median_ms, point.times.low_ms,
+                          point.times.high_ms, point.times.frames)
+            : std::string(",,,0");
+    for (const auto& [name, value] : point.errors)
+      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", quoted(point.scene), quoted(point.family),
+                         quoted(point.method), quoted(point.oracle), quoted(name), value, times,
+                         point.picture, point.difference);
+  }
+  return out;
+}
+
+}  // namespace gnomon::apps::study

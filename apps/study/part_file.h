@@ -1,0 +1,45 @@
+// The files that the parts of a run leave in its folder, and what all of them hold.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/study/shard.h"
+
+namespace gnomon::apps::study {
+
+/// FOLDER/NAME.json of a whole run, FOLDER/NAME-2-of-8.json of a part.
+std::filesystem::path part_file(const std::filesystem::path& folder, std::string_view name,
+                                const Shard& shard);
+
+/// The parts of a run that lie in the folder, in order, without a whole run's file. Throws
+/// ar::InputError when there is none, one is missing, or parts of differently many lie there.
+std::vector<std::filesystem::path> find_parts(const std::filesystem::path& folder,
+                                              std::string_view name);
+
+/// Hands the document to `read` if its "format" is this. Throws ar::InputError in one line that
+/// names the file, also of what nlohmann::json throws meanwhile.
+void read_part(const std::filesystem::path& file, std::string_view format,
+               const std::function<void(const nlohmann::json&)>& read);
+
+/// Writes beside, then renames; an object or array a line. Throws ar::InputError.
+void write_part(const std::filesystem::path& file, const nlohmann::ordered_json& document);
+
+/// Does each of `jobs` jobs occur once? Throws ar::InputError if not; `job_of` gives that of the
+/// i-th of `count` results.
+void require_every_job(std::size_t jobs, std::size_t count,
+                       const std::function<std::size_t(std::size_t)>& job_of);
+
+/// Is the name a file in its folder and nothing else: letters, digits, '-', '_' and '.'?
+bool is_plain_name(std::string_view name);
+
+/// The text with everything that is_plain_name refuses replaced by '_'.
+std::string plain_name(std::string_view text);
+
+}  // namespace gnomon::apps::study

@@ -1,0 +1,30 @@
+// A light's shadow found in every way, against rays.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/study/chart_case.h"
+#include "apps/study/shadow_setting.h"
+#include "apps/study/shadow_trial.h"
+
+namespace gnomon::apps::study {
+
+class RayCase final : public ChartCase {
+ public:
+  /// Threads as in raster::ExecuteOptions. Preconditions: those of ShadowTrial.
+  RayCase(View view, int threads);
+
+  std::string name() const override { return view_.name; }
+  std::size_t settings() const override;
+  Charted run(std::size_t setting, int frames) override;
+
+ private:
+  View view_;
+  int threads_;
+  std::vector<ShadowSetting> settings_;
+  std::optional<ShadowTrial> trial_;
+};
+
+}  // namespace gnomon::apps::study

@@ -1,0 +1,22 @@
+// A part of many independent jobs, so that several processes or machines share them: shard i of n
+// has every n-th job (Slurm's job arrays and MPI launchers count so).
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace gnomon::apps::study {
+
+struct Shard {
+  /// From 1 to count.
+  std::size_t number = 1, count = 1;
+
+  bool has(std::size_t job) const { return job % count == number - 1; }
+  bool is_whole() const { return count == 1; }
+  bool operator==(const Shard&) const = default;
+};
+
+/// Reads "i/n" with 1 <= i <= n <= 100000. Throws ar::InputError that names `option`.
+Shard parse_shard(const std::string& option, const std::string& text);
+
+}  // namespace gnomon::apps::study

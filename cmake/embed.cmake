@@ -1,0 +1,10 @@
+# Writes a C++ file that holds text files as constants. Arguments: OUTPUT, NAMESPACE, and FILES, a list of NAME=PATH.
+set(text "// Made when the program was built; the files that it holds are named by apps/study/CMakeLists.txt.\n#include <string_view>\n\nnamespace ${NAMESPACE} {\n\n")
+foreach(pair IN LISTS FILES)
+  string(REGEX MATCH "^([^=]+)=(.*)$" unused "${pair}")
+  set(name "${CMAKE_MATCH_1}")
+  file(READ "${CMAKE_MATCH_2}" content)
+  string(APPEND text "extern const std::string_view ${name};\nconst std::string_view ${name} = R\"embedded(${content})embedded\";\n\n")
+endforeach()
+string(APPEND text "}  // namespace ${NAMESPACE}\n")
+file(WRITE "${OUTPUT}" "${text}")
