@@ -52,7 +52,7 @@ void chart(const Options& options) {
   study::ChartPart part;
   {
     const auto jobs = study::jobs_of(cases, shard);
-    const Progress progress("setting", static_cast<std::int64_t>(jobs));
+    const Progress progress("scene", static_cast<std::int64_t>(jobs));
     part = study::run_chart(cases, shard, options.frames, options.out, [&](std::size_t done) {
       progress.show(static_cast<std::int64_t>(done));
     });

@@ -17,45 +17,54 @@ namespace {
 
 constexpr const char* kPictures = "pictures";
 
-std::size_t all_jobs(const std::vector<std::unique_ptr<ChartCase>>& cases) {
-  std::size_t jobs = 0;
-  for (const auto& one : cases) jobs += one->settings();
-  return jobs;
+constexpr double kShort_ms = 50.0;
+
+void time_in_turns(const std::vector<std::unique_ptr<Contender>>& contenders, int frames,
+                   std::vector<Charted>& charted) {
+  std::vector<std::vector<double>> times(contenders.size());
+  for (int frame = 0; frame < frames; ++frame) {
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      if (frame == 0 || times[i].back() < kShort_ms) contenders[i]->frame_ms();
+      times[i].push_back(contenders[i]->frame_ms());
+    }
+  }
+  for (std::size_t i = 0; i < times.size(); ++i) charted[i].point.times = times_of(times[i]);
 }
 
-ChartPoint run_job(ChartCase& one, std::size_t setting, std::size_t job, int frames,
-                   const fs::path& out) {
-  Charted charted = one.run(setting, frames);
-  ChartPoint& point = charted.point;
-  point.job = job;
-  const std::string name =
-      fmt::format("{:04}_{}", job, plain_name(point.scene + "_" + point.method));
-  point.picture = name + ".png";
-  point.difference = name + "_difference.png";
-  ar::write_png(out / kPictures / point.picture, charted.picture);
-  ar::write_png(out / kPictures / point.difference, charted.difference);
-  return std::move(point);
+void run_job(ChartCase& one, std::size_t job, int frames, const fs::path& out, ChartPart& part) {
+  const std::vector<std::unique_ptr<Contender>> contenders = one.contenders();
+  std::vector<Charted> charted;
+  for (const auto& contender : contenders) charted.push_back(contender->measure());
+  time_in_turns(contenders, frames, charted);
+  for (Charted& at : charted) {
+    ChartPoint& point = at.point;
+    point.job = job;
+    const std::string name =
+        fmt::format("{:02}_{}", job, plain_name(point.scene + "_" + point.method));
+    point.picture = name + ".png";
+    point.difference = name + "_difference.png";
+    ar::write_png(out / kPictures / point.picture, at.picture);
+    ar::write_png(out / kPictures / point.difference, at.difference);
+    part.points.push_back(std::move(point));
+  }
+  part.done.push_back(job);
 }
 
 }  // namespace
 
 std::size_t jobs_of(const std::vector<std::unique_ptr<ChartCase>>& cases, const Shard& shard) {
-  const std::size_t jobs = all_jobs(cases);
-  return jobs / shard.count + (jobs % shard.count >= shard.number ? 1 : 0);
+  return cases.size() / shard.count + (cases.size() % shard.count >= shard.number ? 1 : 0);
 }
 
 ChartPart run_chart(const std::vector<std::unique_ptr<ChartCase>>& cases, const Shard& shard,
                     int frames, const fs::path& out,
                     const std::function<void(std::size_t)>& progress) {
   make_folder(out / kPictures);
-  ChartPart part{shard, all_jobs(cases), {}};
-  std::size_t job = 0;
-  for (const auto& one : cases) {
-    for (std::size_t setting = 0; setting < one->settings(); ++setting, ++job) {
-      if (!shard.has(job)) continue;
-      part.points.push_back(run_job(*one, setting, job, frames, out));
-      progress(part.points.size());
-    }
+  ChartPart part{.shard = shard, .jobs = cases.size()};
+  for (std::size_t job = 0; job < cases.size(); ++job) {
+    if (!shard.has(job)) continue;
+    run_job(*cases[job], job, frames, out, part);
+    progress(part.done.size());
   }
   write_chart_part(part_file(out, kChartName, shard), part);
   return part;

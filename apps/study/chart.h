@@ -1,5 +1,5 @@
-// Every case's settings as jobs that run one by one, wholly or a shard of them, and the files that
-// come of it.
+// Cases as jobs that run one by one, all or a shard of them, and the files that come of it.
+// Invariant: but for times, the files of shards that are put together are those of a whole run.
 #pragma once
 
 #include <filesystem>

@@ -1,7 +1,7 @@
-// A scene that methods are charted on: what can be set, and what each setting costs and gets wrong.
+// A scene that methods are charted on, and the methods with a setting that contend there.
 #pragma once
 
-#include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,21 +10,29 @@
 
 namespace gnomon::apps::study {
 
-/// A point, but for its job and the names of its pictures.
+/// A point without times, job and names of pictures; and its pictures.
 struct Charted {
   ChartPoint point;
   ar::Image picture, difference;
 };
 
-/// Cheap until the first run, which sets up what all settings share.
+/// A method with a setting on a scene.
+class Contender {
+ public:
+  virtual ~Contender() = default;
+  /// What it gets wrong.
+  virtual Charted measure() = 0;
+  /// Milliseconds of one frame.
+  virtual double frame_ms() = 0;
+};
+
+/// Cheap to make: contenders() sets up what they share.
 class ChartCase {
  public:
   virtual ~ChartCase() = default;
   virtual std::string name() const = 0;
-  virtual std::size_t settings() const = 0;
-  /// Measures the error, and times that many frames after one that is not timed. The errors are the
-  /// same for every number of frames.
-  virtual Charted run(std::size_t setting, int frames) = 0;
+  /// Always the same ones in the same order. They refer to the case.
+  virtual std::vector<std::unique_ptr<Contender>> contenders() = 0;
 };
 
 }  // namespace gnomon::apps::study

@@ -85,6 +85,7 @@ void write_chart_part(const std::filesystem::path& file, const ChartPart& part) 
   write_part(file, {{"format", kChartFormat},
                     {"shard", {part.shard.number, part.shard.count}},
                     {"jobs", part.jobs},
+                    {"done", part.done},
                     {"points", points}});
 }
 
@@ -94,6 +95,7 @@ ChartPart read_chart_part(const std::filesystem::path& file) {
     const json& shard = document.at("shard");
     part.shard = {shard.at(0).get<std::size_t>(), shard.at(1).get<std::size_t>()};
     part.jobs = document.at("jobs").get<std::size_t>();
+    part.done = document.at("done").get<std::vector<std::size_t>>();
     for (const json& point : document.at("points"))
       part.points.push_back(point_of(point, part.jobs));
   });
@@ -107,11 +109,12 @@ ChartPart merge_chart_parts(std::span<const ChartPart> parts) {
     if (part.jobs != whole.jobs)
       throw ar::InputError(fmt::format(
           "parts of runs with {} and with {} jobs do not belong together", whole.jobs, part.jobs));
+    whole.done.insert(whole.done.end(), part.done.begin(), part.done.end());
     whole.points.insert(whole.points.end(), part.points.begin(), part.points.end());
   }
-  require_every_job(whole.jobs, whole.points.size(),
-                    [&](std::size_t i) { return whole.points[i].job; });
-  std::ranges::sort(whole.points, {}, &ChartPoint::job);
+  std::ranges::sort(whole.done);
+  require_every_job(whole.jobs, whole.done);
+  std::ranges::stable_sort(whole.points, {}, &ChartPoint::job);
   return whole;
 }
 

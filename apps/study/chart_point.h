@@ -27,6 +27,7 @@ struct Times {
 Times times_of(std::vector<double> ms);
 
 struct ChartPoint {
+  /// The number of its scene's job.
   std::size_t job = 0;
   std::string scene, family, method;
   /// What errors are measured against.
@@ -42,9 +43,10 @@ struct ChartPoint {
 /// Points of a run, or of a part of one.
 struct ChartPart {
   Shard shard;
-  /// Of the whole run.
+  /// Of the whole run, and those that are in this part, ascending.
   std::size_t jobs = 0;
-  /// Ascending by job.
+  std::vector<std::size_t> done;
+  /// In the order of their jobs.
   std::vector<ChartPoint> points;
   bool operator==(const ChartPart&) const = default;
 };

@@ -95,19 +95,13 @@ void write_part(const fs::path& file, const nlohmann::ordered_json& document) {
   ar::write_file(file, document.dump(1) + "\n");
 }
 
-void require_every_job(std::size_t jobs, std::size_t count,
-                       const std::function<std::size_t(std::size_t)>& job_of) {
-  // Before memory is taken for what a file says.
-  if (count > jobs) throw ar::InputError("some job is there twice");
-  if (count < jobs)
-    throw ar::InputError(fmt::format("{} of {} jobs are missing", jobs - count, jobs));
-  std::vector<bool> seen(jobs, false);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t job = job_of(i);
-    if (job >= jobs) throw ar::InputError(fmt::format("there is no job {}", job));
-    if (seen[job]) throw ar::InputError(fmt::format("job {} is there twice", job));
-    seen[job] = true;
+void require_every_job(std::size_t jobs, std::span<const std::size_t> done) {
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    if (done[i] >= jobs) throw ar::InputError(fmt::format("there is no job {}", done[i]));
+    if (done[i] < i) throw ar::InputError(fmt::format("job {} is there twice", done[i]));
+    if (done[i] > i) throw ar::InputError(fmt::format("job {} is missing", i));
   }
+  if (done.size() != jobs) throw ar::InputError(fmt::format("job {} is missing", done.size()));
 }
 
 bool is_plain_name(std::string_view name) {

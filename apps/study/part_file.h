@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,10 +32,9 @@ void read_part(const std::filesystem::path& file, std::string_view format,
 /// Writes beside, then renames; an object or array a line. Throws ar::InputError.
 void write_part(const std::filesystem::path& file, const nlohmann::ordered_json& document);
 
-/// Does each of `jobs` jobs occur once? Throws ar::InputError if not; `job_of` gives that of the
-/// i-th of `count` results.
-void require_every_job(std::size_t jobs, std::size_t count,
-                       const std::function<std::size_t(std::size_t)>& job_of);
+/// Are these all the numbers from 0 on, `jobs` of them? Throws ar::InputError if not.
+/// Precondition: ascending.
+void require_every_job(std::size_t jobs, std::span<const std::size_t> done);
 
 /// Is the name a file in its folder and nothing else: letters, digits, '-', '_' and '.'?
 bool is_plain_name(std::string_view name);

@@ -2,28 +2,61 @@
 
 #include <utility>
 
+#include "apps/study/shadow_setting.h"
+
 namespace gnomon::apps::study {
 
-RayCase::RayCase(View view, int threads)
-    : view_(std::move(view)), threads_(threads), settings_(charted_settings()) {}
+namespace {
 
-/// After the settings come the rays themselves.
-std::size_t RayCase::settings() const { return settings_.size() + 1; }
+constexpr const char* kRays = "Embree rays";
 
-Charted RayCase::run(std::size_t setting, int frames) {
-  if (!trial_) trial_.emplace(view_, threads_);
-  const bool is_rays = setting == settings_.size();
-  const ShadowShot shot =
-      is_rays ? trial_->run_rays(frames) : trial_->run(settings_[setting], frames);
+Charted charted(const ShadowTrial& trial, const ShadowShot& shot, std::string family,
+                std::string method) {
   Charted out;
-  out.point.scene = name();
-  out.point.family = is_rays ? "rays" : settings_[setting].family;
-  out.point.method = is_rays ? "Embree rays" : settings_[setting].name;
-  out.point.oracle = "Embree rays";
-  out.point.times = times_of(shot.times_ms);
+  out.point.scene = trial.view().name;
+  out.point.family = std::move(family);
+  out.point.method = std::move(method);
+  out.point.oracle = kRays;
   out.point.errors = {{"wrong pixels, % of those the light reaches", 100.0 * shot.wrong_share()}};
-  out.picture = trial_->picture();
-  out.difference = trial_->difference();
+  out.picture = trial.picture();
+  out.difference = trial.difference();
+  return out;
+}
+
+class Setting final : public Contender {
+ public:
+  Setting(ShadowTrial& trial, ShadowSetting setting)
+      : trial_(trial), setting_(std::move(setting)) {}
+  Charted measure() override {
+    return charted(trial_, trial_.measure(setting_), setting_.family, setting_.name);
+  }
+  double frame_ms() override { return trial_.frame_ms(setting_); }
+
+ private:
+  ShadowTrial& trial_;
+  ShadowSetting setting_;
+};
+
+class Rays final : public Contender {
+ public:
+  explicit Rays(ShadowTrial& trial) : trial_(trial) {}
+  Charted measure() override { return charted(trial_, trial_.measure_rays(), "rays", kRays); }
+  double frame_ms() override { return trial_.rays_ms(); }
+
+ private:
+  ShadowTrial& trial_;
+};
+
+}  // namespace
+
+RayCase::RayCase(View view, int threads) : view_(std::move(view)), threads_(threads) {}
+
+std::vector<std::unique_ptr<Contender>> RayCase::contenders() {
+  if (!trial_) trial_.emplace(view_, threads_);
+  std::vector<std::unique_ptr<Contender>> out;
+  for (ShadowSetting& setting : charted_settings())
+    out.push_back(std::make_unique<Setting>(*trial_, std::move(setting)));
+  out.push_back(std::make_unique<Rays>(*trial_));
   return out;
 }
 

@@ -1,12 +1,12 @@
 // A light's shadow found in every way, against rays.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/study/chart_case.h"
-#include "apps/study/shadow_setting.h"
 #include "apps/study/shadow_trial.h"
 
 namespace gnomon::apps::study {
@@ -17,13 +17,11 @@ class RayCase final : public ChartCase {
   RayCase(View view, int threads);
 
   std::string name() const override { return view_.name; }
-  std::size_t settings() const override;
-  Charted run(std::size_t setting, int frames) override;
+  std::vector<std::unique_ptr<Contender>> contenders() override;
 
  private:
   View view_;
   int threads_;
-  std::vector<ShadowSetting> settings_;
   std::optional<ShadowTrial> trial_;
 };
 

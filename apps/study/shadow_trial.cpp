@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <map>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -108,6 +109,8 @@ struct ShadowTrial::Impl {
   /// The part of the light that the last run left out, and its picture's depth format.
   std::vector<float> dark;
   raster::DepthFormat last_format = raster::DepthFormat::d24;
+  std::map<raster::DepthFormat, Buffers> timed;
+  std::map<std::size_t, pipeline::Scene> reduced;
 
   Impl(View given, int thread_count) : view(std::move(given)), threads(thread_count) {
     raster::require(view.scene.lights.size() == 1 && view.scene.lights[0].samples <= 1,
@@ -140,6 +143,13 @@ struct ShadowTrial::Impl {
         general_options(setting, memory, threads));
     raster::execute(frame, {.threads = threads, .memory = &memory.executing});
     return watch.lap_ms();
+  }
+
+  /// The scene whose objects cast with so many triangles.
+  const pipeline::Scene& with_casters(std::size_t triangles) {
+    const auto [at, fresh] = reduced.try_emplace(triangles, view.scene);
+    if (fresh) pipeline::ReducedOccluders(triangles).apply(at->second);
+    return at->second;
   }
 
   void find_truth() {
@@ -199,41 +209,41 @@ const View& ShadowTrial::view() const { return impl_->view; }
 std::size_t ShadowTrial::tested() const { return impl_->tested; }
 std::size_t ShadowTrial::in_shadow() const { return impl_->in_shadow; }
 
-ShadowShot ShadowTrial::run(const ShadowSetting& setting, int frames) {
+ShadowShot ShadowTrial::measure(const ShadowSetting& setting) {
   Impl& at = *impl_;
-  pipeline::Scene scene = at.view.scene;
-  pipeline::ReducedOccluders(setting.occluder_triangles).apply(scene);
   ShadowShot shot;
-  {
-    Buffers buffers(at.view.camera, raster::ColorFormat::rgba32f, setting.depth);
-    at.draw(buffers, scene, setting);
-    at.last_format = setting.depth;
-    at.find_dark(buffers, setting.depth, shot);
-  }
+  Buffers buffers(at.view.camera, raster::ColorFormat::rgba32f, setting.depth);
+  at.draw(buffers, at.with_casters(setting.occluder_triangles), setting);
+  at.last_format = setting.depth;
+  at.find_dark(buffers, setting.depth, shot);
   at.compare(shot);
-  Buffers buffers(at.view.camera, raster::ColorFormat::rgba8, setting.depth);
-  for (int i = 0; i <= frames && frames > 0; ++i) {
-    const double ms = at.draw(buffers, scene, setting);
-    if (i > 0) shot.times_ms.push_back(ms);
-  }
   return shot;
 }
 
-ShadowShot ShadowTrial::run_rays(int frames) {
+ShadowShot ShadowTrial::measure_rays() {
   Impl& at = *impl_;
-  ShadowShot shot;
-  for (int i = 0; i < frames; ++i) {
-    ar::Stopwatch watch;
-    const RayReference rays(at.view.scene);
-    cast_on_threads(rays, pipeline::pixel_rays(at.view.camera), at.view.scene.lights[0].position,
-                    at.threads);
-    shot.times_ms.push_back(watch.lap_ms());
-  }
-  at.dark.assign(at.truth.size(), 0.0f);
-  for (std::size_t i = 0; i < at.truth.size(); ++i) at.dark[i] = std::max(at.truth[i], 0.0f);
+  at.dark.resize(at.truth.size());
+  std::ranges::transform(at.truth, at.dark.begin(), [](float t) { return std::max(t, 0.0f); });
   at.last_format = raster::DepthFormat::d24;
+  ShadowShot shot;
   at.compare(shot);
   return shot;
+}
+
+double ShadowTrial::frame_ms(const ShadowSetting& setting) {
+  Impl& at = *impl_;
+  const auto buffers = at.timed.try_emplace(setting.depth, at.view.camera,
+                                            raster::ColorFormat::rgba8, setting.depth);
+  return at.draw(buffers.first->second, at.with_casters(setting.occluder_triangles), setting);
+}
+
+double ShadowTrial::rays_ms() const {
+  const Impl& at = *impl_;
+  ar::Stopwatch watch;
+  const RayReference rays(at.view.scene);
+  cast_on_threads(rays, pipeline::pixel_rays(at.view.camera), at.view.scene.lights[0].position,
+                  at.threads);
+  return watch.lap_ms();
 }
 
 ar::Image ShadowTrial::picture() const {

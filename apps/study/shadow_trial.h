@@ -31,8 +31,6 @@ struct ShadowShot {
   double too_dark = 0.0;
   /// Channels of the colour buffer that are not finite.
   std::size_t not_finite = 0;
-  /// Of recording and executing the frame in RGBA8.
-  std::vector<double> times_ms;
 
   double wrong_share() const { return tested ? wrong / static_cast<double>(tested) : 0.0; }
 };
@@ -51,15 +49,18 @@ class ShadowTrial {
   /// Of those, the ones that rays see in shadow.
   std::size_t in_shadow() const;
 
-  /// Draws the shadow and compares; then times it `frames` times, after a frame that is not timed.
-  /// Errors: as pipeline::record_general.
-  ShadowShot run(const ShadowSetting& setting, int frames);
-  /// What rays take, building their tree and one primary and one shadow ray a pixel; nothing is
-  /// wrong.
-  ShadowShot run_rays(int frames);
+  /// Draws the shadow and compares. Errors: as pipeline::record_general.
+  ShadowShot measure(const ShadowSetting& setting);
+  /// The rays' own shadow, of which nothing is wrong.
+  ShadowShot measure_rays();
 
-  /// Of the last run: the picture; and red where it is too dark, blue where too light, over a faint
-  /// picture without shadows.
+  /// Milliseconds of recording and executing the frame once, in RGBA8.
+  double frame_ms(const ShadowSetting& setting);
+  /// What rays take: building their tree, and one primary and one shadow ray a pixel.
+  double rays_ms() const;
+
+  /// Of what was measured last: the picture; and red where it is too dark, blue where too light,
+  /// over a faint picture.
   ar::Image picture() const;
   ar::Image difference() const;
 

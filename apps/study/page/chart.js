@@ -136,8 +136,10 @@
           x: { type: log ? "logarithmic" : "linear", title: { display: true, text: "milliseconds a frame" } },
           y: {
             type: log ? "logarithmic" : "linear",
+            min: log ? floor : 0,
+            afterBuildTicks: (axis) => { if (log) axis.ticks.unshift({ value: floor }); },
             title: { display: true, text: scene().errors[error()] },
-            ticks: { callback: (value) => log && value <= floor * 1.0001 ? "0" : number(value) },
+            ticks: { callback: (value) => !log || value > floor * 1.001 ? number(value) : value > floor * 0.999 ? "0" : "" },
           },
         },
         plugins: {
