@@ -32,4 +32,7 @@ void add_render(CLI::App& program);
 /// gnomon replay FRAME: a recorded frame executed anew.
 void add_replay(CLI::App& program);
 
+/// gnomon stability: where methods fail.
+void add_stability(CLI::App& program);
+
 }  // namespace gnomon::apps

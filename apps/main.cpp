@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
       "  gnomon mesh check model.glb\n"
       "  gnomon render scene.toml --out out\n"
       "  gnomon replay recorded.frame --out out\n"
+      "  gnomon stability --out out\n"
       "  gnomon golden --verify\n"
       "  gnomon COMMAND --help");
   gnomon::apps::add_ar(program);
@@ -52,6 +53,7 @@ int run(int argc, char** argv) {
   gnomon::apps::add_mesh(program);
   gnomon::apps::add_render(program);
   gnomon::apps::add_replay(program);
+  gnomon::apps::add_stability(program);
 
   try {
     program.parse(argc, argv);

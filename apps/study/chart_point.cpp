@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/study/csv.h"
 #include "apps/study/part_file.h"
 #include "ar/error.h"
 #include "ar/median.h"
@@ -65,12 +66,6 @@ ChartPoint point_of(const json& in, std::size_t jobs) {
   return point;
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 }  // namespace
 
 Times times_of(std::vector<double> ms) {
@@ -128,9 +123,10 @@ std::string chart_csv(const ChartPart& part) {
                           point.times.high_ms, point.times.frames)
             : std::string(",,,0");
     for (const auto& [name, value] : point.errors)
-      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", quoted(point.scene), quoted(point.family),
-                         quoted(point.method), quoted(point.oracle), quoted(name), value, times,
-                         point.picture, point.difference);
+      out +=
+          fmt::format("{},{},{},{},{},{},{},{},{}\n", csv_quoted(point.scene),
+                      csv_quoted(point.family), csv_quoted(point.method), csv_quoted(point.oracle),
+                      csv_quoted(name), value, times, point.picture, point.difference);
   }
   return out;
 }

@@ -8,7 +8,7 @@
 
 namespace gnomon::apps::study {
 
-extern const std::string_view kPageCss, kChartHtml, kChartScript;
+extern const std::string_view kPageCss, kChartHtml, kChartScript, kStabilityHtml, kStabilityScript;
 /// Chart.js (chartjs.org, MIT licence), minified.
 extern const std::string_view kChartLibrary;
 

@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "apps/commands.h"
+#include "apps/output_folder.h"
+#include "apps/progress.h"
+#include "apps/study/camera_sweeps.h"
+#include "apps/study/stability.h"
+#include "ar/error.h"
+
+namespace gnomon::apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+  fs::path out;
+  std::vector<std::string> only;
+  std::string shard = "1/1";
+  bool merge = false, list = false;
+  int threads = 0;
+};
+
+study::Sweeps all_sweeps(const Options& options) {
+  study::Sweeps sweeps;
+  study::add_camera_sweeps(sweeps, options.threads);
+  return sweeps;
+}
+
+study::Sweeps chosen_sweeps(const Options& options) {
+  study::Sweeps all = all_sweeps(options);
+  if (options.only.empty()) return all;
+  for (const std::string& name : options.only)
+    if (std::ranges::none_of(all, [&](const auto& s) { return s->text().name == name; }))
+      throw ar::InputError(
+          fmt::format("--only {}: there is no such sweep (--list names them)", name));
+  std::erase_if(all, [&](const auto& sweep) {
+    return std::ranges::find(options.only, sweep->text().name) == options.only.end();
+  });
+  return all;
+}
+
+void list(const study::Sweeps& sweeps) {
+  for (const auto& sweep : sweeps) {
+    const study::SweepText text = sweep->text();
+    std::cout << fmt::format("{:24} {} ({}; {} inputs)\n", text.name, text.title, text.parameter,
+                             sweep->inputs() * sweep->values().size());
+  }
+}
+
+void say_written(const fs::path& out, const study::StabilityPart& whole) {
+  std::cout << fmt::format("{} sweeps, {} inputs; wrote {}\n", whole.sweeps.size(),
+                           study::inputs_of(whole), (out / "stability.html").string());
+}
+
+void stability(const Options& options) {
+  const study::Shard shard = study::parse_shard("--shard", options.shard);
+  const study::Sweeps sweeps = chosen_sweeps(options);
+  if (options.list) return list(sweeps);
+  if (options.out.empty()) throw ar::InputError("--out: missing: where do the results go?");
+  check_folder(options.out);
+  if (options.merge) return say_written(options.out, study::merge_stability(options.out));
+  study::StabilityPart part;
+  {
+    const Progress progress("value", static_cast<std::int64_t>(study::jobs_of(sweeps, shard)));
+    part = study::run_stability(sweeps, shard, options.out, [&](std::size_t done) {
+      progress.show(static_cast<std::int64_t>(done));
+    });
+  }
+  if (!shard.is_whole()) {
+    std::cout << fmt::format("part {} of {}: {} values of {}\n", shard.number, shard.count,
+                             part.columns.size(), part.jobs);
+    return;
+  }
+  study::write_stability(options.out, part);
+  say_written(options.out, part);
+}
+
+}  // namespace
+
+void add_stability(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "stability", "Sweep each way in which shadow methods fail, and map where they give up");
+  command->add_option("--out", options->out, "Folder for the results");
+  command->add_option("--only", options->only, "These sweeps alone (--list names them)");
+  command->add_flag("--list", options->list, "Name the sweeps, and do nothing else");
+  command->add_option("--shard", options->shard,
+                      "Run part I of N of the jobs (I/N), for a scheduler; --merge when all ran");
+  command->add_flag("--merge", options->merge, "Put the parts that lie in the folder together");
+  command->add_option("--threads", options->threads, "Threads (0: all of the machine)")
+      ->check(CLI::Range(0, 256));
+  command->footer(
+      "Writes stability.html (one file, no network needed), stability.csv and stability.json; the\n"
+      "same bytes for every number of threads.\n"
+      "Examples:\n"
+      "  gnomon stability --list\n"
+      "  gnomon stability --out out --only camera-in-volume\n"
+      "  gnomon stability --out out --shard 2/8  # on each of eight machines, then\n"
+      "  gnomon stability --out out --merge");
+  command->callback([options] { stability(*options); });
+}
+
+}  // namespace gnomon::apps
