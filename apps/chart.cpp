@@ -11,9 +11,8 @@
 #include "apps/output_folder.h"
 #include "apps/progress.h"
 #include "apps/study/chart.h"
-#include "apps/study/generated_views.h"
+#include "apps/study/chart_cases.h"
 #include "apps/study/gnuplot.h"
-#include "apps/study/ray_case.h"
 
 namespace gnomon::apps {
 
@@ -22,21 +21,12 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  std::vector<fs::path> scenes;
+  std::vector<fs::path> studies;
   fs::path out;
   std::string shard = "1/1";
-  bool merge = false;
+  bool merge = false, generated = true;
   int frames = 11, threads = 0;
 };
-
-constexpr int kWidth = 640, kHeight = 480;
-
-std::vector<std::unique_ptr<study::ChartCase>> cases_of(const Options& options) {
-  std::vector<std::unique_ptr<study::ChartCase>> cases;
-  for (study::View& view : study::generated_views(kWidth, kHeight))
-    cases.push_back(std::make_unique<study::RayCase>(std::move(view), options.threads));
-  return cases;
-}
 
 void say_written(const fs::path& out, const study::ChartPart& whole) {
   std::cout << fmt::format("{} points; wrote {}\n", whole.points.size(),
@@ -48,7 +38,8 @@ void chart(const Options& options) {
   check_folder(options.out);
   study::require_gnuplot();
   if (options.merge) return say_written(options.out, study::merge_chart(options.out));
-  const auto cases = cases_of(options);
+  study::CapturedRooms rooms(options.threads);
+  const auto cases = study::chart_cases(options.studies, options.generated, rooms, options.threads);
   study::ChartPart part;
   {
     const auto jobs = study::jobs_of(cases, shard);
@@ -72,6 +63,11 @@ void add_chart(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
       "chart", "Chart time against error: every shadow method and setting on every scene");
+  command->add_option("study", options->studies,
+                      "Study files, which name photographs with their truth, and scene files "
+                      "(TOML, docs/accuracy.md)");
+  command->add_flag("!--no-generated", options->generated,
+                    "Leave out the scenes that the program makes itself");
   command->add_option("--out", options->out, "Folder for the results")->required();
   command
       ->add_option("--frames", options->frames,
@@ -88,6 +84,7 @@ void add_chart(CLI::App& program) {
       "pictures/.\n"
       "Examples:\n"
       "  gnomon chart --out out\n"
+      "  gnomon chart examples/study.toml --out out\n"
       "  gnomon chart --out out --shard 2/8      # on each of eight machines, then\n"
       "  gnomon chart --out out --merge");
   command->callback([options] { chart(*options); });

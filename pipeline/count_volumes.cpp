@@ -1,5 +1,10 @@
 #include "pipeline/count_volumes.h"
 
+#include <algorithm>
+
+#include "pipeline/full_screen.h"
+#include "raster/check.h"
+
 namespace gnomon::pipeline {
 namespace {
 
@@ -52,11 +57,8 @@ void count_single_sided(raster::Frame& frame, const PlacedVolume& volume,
   frame.draw(std::move(draw));
 }
 
-}  // namespace
-
-void count_volumes(raster::Frame& frame, std::span<const PlacedVolume> volumes,
+void count_at_once(raster::Frame& frame, std::span<const PlacedVolume> volumes,
                    const CountOptions& options) {
-  for (const PlacedVolume& volume : volumes) frame.keep(volume.volume);
   if (!options.appendix_letter && !options.single_sided) {
     for (const PlacedVolume& volume : volumes) count_two_sided(frame, volume, options);
     return;
@@ -64,6 +66,31 @@ void count_volumes(raster::Frame& frame, std::span<const PlacedVolume> volumes,
   for (const bool add : {true, false}) {
     for (const PlacedVolume& volume : volumes) count_single_sided(frame, volume, options, add);
   }
+}
+
+void count_in_batches(raster::Frame& frame, std::span<const PlacedVolume> volumes,
+                      CountOptions options) {
+  const std::uint8_t bits = options.write_mask;
+  raster::require((bits & (bits + 1)) == 0 && bits > 2 * kLayers,
+                  "counts in batches have the low bits, and some");
+  options.write_mask = bits >> 1;
+  const std::size_t batch = options.write_mask / kLayers;
+  for (std::size_t first = 0; first < volumes.size(); first += batch) {
+    count_at_once(frame, volumes.subspan(first, std::min(batch, volumes.size() - first)), options);
+    flag_counts(frame, options.write_mask, bits);
+  }
+}
+
+}  // namespace
+
+void count_volumes(raster::Frame& frame, std::span<const PlacedVolume> volumes,
+                   const CountOptions& options) {
+  for (const PlacedVolume& volume : volumes) frame.keep(volume.volume);
+  const bool fit = volumes.size() * kLayers <= options.write_mask;
+  if (fit || !options.in_batches || options.appendix_letter)
+    count_at_once(frame, volumes, options);
+  else
+    count_in_batches(frame, volumes, options);
 }
 
 }  // namespace gnomon::pipeline

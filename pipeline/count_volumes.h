@@ -13,6 +13,11 @@
 
 namespace gnomon::pipeline {
 
+/// How often a caster hides a point from a light in one line, at most, where counts must not wrap
+/// (CountOptions::in_batches). One that does so more often, and 256 times in sum, may come out as
+/// not in shadow.
+inline constexpr std::size_t kLayers = 3;
+
 struct CountOptions {
   /// Appendix A to the letter: single-sided draws with culling and saturating INCR and DECR, all
   /// increments before all decrements. Otherwise one two-sided draw a volume with wrapping
@@ -22,8 +27,13 @@ struct CountOptions {
   /// that take away, as in the appendix, but with wrapping operations. The stencil is the two-sided
   /// one's.
   bool single_sided = false;
-  /// Stencil bits that count.
+  /// Stencil bits that count: the low ones.
   std::uint8_t write_mask = 0xff;
+  /// More volumes than the bits can count are counted in batches; after each, what is not 0 becomes
+  /// the highest of the bits, so that no count comes back to 0. A volume is taken to hold a point up
+  /// to kLayers times. The stencil then says whether, not how often. Not with the appendix's
+  /// saturating operations, which have an end of their own.
+  bool in_batches = false;
   /// All casters are in the depth buffer: front caps of z-pass volumes are left out, where they
   /// coincide with what was drawn (PlacedVolume::cap_is_drawn).
   bool casters_drawn = false;

@@ -229,7 +229,7 @@ void DifferentialMethod::count(raster::Frame& frame, std::size_t number, const C
                     .threads = options.take.threads,
                     .memory = &volumes_});
   for (PlacedVolume& volume : volumes) volume.window = window;
-  count_volumes(frame, volumes, {.casters_drawn = true});
+  count_volumes(frame, volumes, {.in_batches = true, .casters_drawn = true});
 }
 
 void DifferentialMethod::subtract(raster::Frame& frame, std::size_t number, const Camera& camera,

@@ -1,6 +1,8 @@
 #include "pipeline/full_screen.h"
 
 #include <array>
+#include <bit>
+#include <string>
 #include <utility>
 
 #include "raster/check.h"
@@ -41,12 +43,15 @@ raster::DepthState where_a_surface_is() {
   return {.func = raster::CompareFunc::greater, .write = false};
 }
 
-void flag_counts(raster::Frame& frame) {
+void flag_counts(raster::Frame& frame) { flag_counts(frame, 0x7f, 0xff); }
+
+void flag_counts(raster::Frame& frame, std::uint8_t counts, std::uint8_t bits) {
   stencil_quad(frame,
                {.func = raster::CompareFunc::not_equal,
-                .read_mask = 0x7f,
+                .read_mask = counts,
+                .write_mask = bits,
                 .pass = raster::StencilOp::replace},
-               kCounted, "counts become bit 7");
+               std::bit_floor(bits), "counts become bit " + std::to_string(std::bit_width(bits) - 1));
 }
 
 void drop_flagged(raster::Frame& frame) {

@@ -22,6 +22,10 @@ inline constexpr std::uint8_t kCounted = 0x80;
 /// Sets bit 7 and clears the others where any of the low 7 bits is set (counts become a flag).
 void flag_counts(raster::Frame& frame);
 
+/// The same where any bit of `counts` is set, with the highest bit of `bits`, of which the others
+/// are cleared; bits beside those stay.
+void flag_counts(raster::Frame& frame, std::uint8_t counts, std::uint8_t bits);
+
 /// Zeroes the stencil where bit 7 is set.
 void drop_flagged(raster::Frame& frame);
 

@@ -125,6 +125,7 @@ class GeneralMethod {
     count_volumes(frame_, make_volumes(objects_, light, receivers_, region_, options),
                   {.appendix_letter = options_.appendix_letter,
                    .single_sided = options_.single_sided,
+                   .in_batches = true,
                    .casters_drawn = !options_.all_caps,
                    .light_name = light.name});
   }

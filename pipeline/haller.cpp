@@ -101,6 +101,7 @@ class Recorder {
     count_volumes(frame_, volumes,
                   {.appendix_letter = options_.appendix_letter,
                    .write_mask = write_mask,
+                   .in_batches = true,
                    .casters_drawn = virtual_objects_drawn_ && !options_.all_caps,
                    .light_name = light.name});
   }

@@ -56,7 +56,7 @@ raster::Frame record_modulative(const Scene& scene, const Camera& camera,
     volume_options.casters = &casters;
     frame.begin_pass("shadow volumes: " + light.name, targets);
     count_volumes(frame, make_volumes(objects, light, receivers, region, volume_options),
-                  {.casters_drawn = true, .light_name = light.name});
+                  {.in_batches = true, .casters_drawn = true, .light_name = light.name});
     frame.begin_pass("shadow quad: " + light.name, targets);
     draw_shadow_quad(frame, options.shadow_color);
   }

@@ -1,5 +1,7 @@
 #include "apps/study/chart.h"
 
+#include <numeric>
+
 #include "apps/output_folder.h"
 #include "apps/study/chart_page.h"
 #include "apps/study/chart_plot.h"
@@ -17,14 +19,15 @@ namespace {
 
 constexpr const char* kPictures = "pictures";
 
-constexpr double kShort_ms = 50.0;
+constexpr double kShort_ms = 50.0, kCap_ms = 2000.0;
 
 void time_in_turns(const std::vector<std::unique_ptr<Contender>>& contenders, int frames,
                    std::vector<Charted>& charted) {
   std::vector<std::vector<double>> times(contenders.size());
   for (int frame = 0; frame < frames; ++frame) {
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-      if (frame == 0 || times[i].back() < kShort_ms) contenders[i]->frame_ms();
+      if (std::reduce(times[i].begin(), times[i].end()) > kCap_ms) continue;
+      if (!times[i].empty() && times[i].back() < kShort_ms) contenders[i]->frame_ms();
       times[i].push_back(contenders[i]->frame_ms());
     }
   }

@@ -49,10 +49,15 @@ class Rays final : public Contender {
 
 }  // namespace
 
-RayCase::RayCase(View view, int threads) : view_(std::move(view)), threads_(threads) {}
+RayCase::RayCase(std::string name, std::function<View()> view, int threads)
+    : name_(std::move(name)), view_(std::move(view)), threads_(threads) {}
 
 std::vector<std::unique_ptr<Contender>> RayCase::contenders() {
-  if (!trial_) trial_.emplace(view_, threads_);
+  if (!trial_) {
+    View view = view_();
+    view.name = name_;
+    trial_.emplace(std::move(view), threads_);
+  }
   std::vector<std::unique_ptr<Contender>> out;
   for (ShadowSetting& setting : charted_settings())
     out.push_back(std::make_unique<Setting>(*trial_, std::move(setting)));

@@ -1,6 +1,7 @@
 // A light's shadow found in every way, against rays.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,14 +14,16 @@ namespace gnomon::apps::study {
 
 class RayCase final : public ChartCase {
  public:
-  /// Threads as in raster::ExecuteOptions. Preconditions: those of ShadowTrial.
-  RayCase(View view, int threads);
+  /// `view` is called when contenders are asked for; its name is taken from here. Threads as in
+  /// raster::ExecuteOptions. Preconditions of the view: those of ShadowTrial.
+  RayCase(std::string name, std::function<View()> view, int threads);
 
-  std::string name() const override { return view_.name; }
+  std::string name() const override { return name_; }
   std::vector<std::unique_ptr<Contender>> contenders() override;
 
  private:
-  View view_;
+  std::string name_;
+  std::function<View()> view_;
   int threads_;
   std::optional<ShadowTrial> trial_;
 };

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <map>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "ar/stopwatch.h"
@@ -13,6 +11,7 @@
 #include "pipeline/reduced_occluder.h"
 #include "raster/check.h"
 #include "raster/execute.h"
+#include "raster/executor.h"
 
 namespace gnomon::apps::study {
 
@@ -71,24 +70,16 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
 }
 
-/// The same answer for any number of tasks, since each ray is its own.
+/// One sample a ray.
 std::vector<RayReference::Sample> cast_on_threads(const RayReference& rays,
                                                   std::span<const pipeline::Ray> all,
                                                   const glm::vec4& light, int threads) {
-  const unsigned machine = std::max(1u, std::thread::hardware_concurrency());
-  const std::size_t tasks = threads > 0 ? static_cast<std::size_t>(threads) : machine;
-  const std::size_t each = (all.size() + tasks - 1) / tasks;
-  std::vector<std::future<std::vector<RayReference::Sample>>> parts;
-  for (std::size_t first = 0; first < all.size(); first += each)
-    parts.push_back(std::async(std::launch::async, [&, first] {
-      return rays.cast(all.subspan(first, std::min(each, all.size() - first)), light);
-    }));
-  std::vector<RayReference::Sample> out;
-  out.reserve(all.size());
-  for (auto& part : parts) {
-    const auto samples = part.get();
-    out.insert(out.end(), samples.begin(), samples.end());
-  }
+  constexpr std::size_t kChunk = 4096;
+  std::vector<RayReference::Sample> out(all.size());
+  raster::for_each_chunk(all.size(), kChunk, threads, [&](std::size_t first, std::size_t last) {
+    std::ranges::copy(rays.cast(all.subspan(first, last - first), light),
+                      out.begin() + static_cast<std::ptrdiff_t>(first));
+  });
   return out;
 }
 

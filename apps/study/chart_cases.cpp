@@ -1,0 +1,58 @@
+#include "apps/study/chart_cases.h"
+
+#include <utility>
+
+#include "apps/study/generated_views.h"
+#include "apps/study/photograph_case.h"
+#include "apps/study/ray_case.h"
+#include "apps/study/room_case.h"
+#include "apps/study/study_file.h"
+#include "ar/error.h"
+#include "ar/pinhole_view.h"
+
+namespace gnomon::apps::study {
+
+namespace {
+
+constexpr int kWidth = 640, kHeight = 480;
+
+/// What a pinhole camera in the photograph's place sees.
+View pinhole_view(const StudyPhotograph& photograph, int threads) {
+  PlacedPhotograph at = place(photograph, threads);
+  if (at.scene.lights.size() != 1)
+    throw ar::InputError(photograph.scene.string() + ": one light can be charted");
+  at.scene.lights[0].samples = 1;
+  const ar::PinholeView view(at.lens, 1);
+  return {photograph.name, at.scene,
+          view.camera(at.world_from_camera, at.file.near_m, at.file.far_m)};
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<ChartCase>> chart_cases(const std::vector<std::filesystem::path>& files,
+                                                    bool generated, CapturedRooms& rooms,
+                                                    int threads) {
+  std::vector<std::unique_ptr<ChartCase>> cases;
+  for (const std::filesystem::path& file : files) {
+    const Study study = read_study(file);
+    for (const StudyPhotograph& photograph : study.photographs) {
+      if (!photograph.capture.empty()) {
+        cases.push_back(std::make_unique<RoomCase>(photograph, rooms, threads));
+        continue;
+      }
+      cases.push_back(std::make_unique<PhotographCase>(photograph, threads));
+      cases.push_back(std::make_unique<RayCase>(
+          photograph.name + ", light's shadow",
+          [photograph, threads] { return pinhole_view(photograph, threads); }, threads));
+    }
+  }
+  if (!generated) return cases;
+  for (View& view : generated_views(kWidth, kHeight)) {
+    std::string name = view.name;
+    cases.push_back(std::make_unique<RayCase>(
+        std::move(name), [view = std::move(view)] { return view; }, threads));
+  }
+  return cases;
+}
+
+}  // namespace gnomon::apps::study
