@@ -30,8 +30,8 @@ struct CountOptions {
   /// Stencil bits that count: the low ones.
   std::uint8_t write_mask = 0xff;
   /// More volumes than the bits can count are counted in batches; after each, what is not 0 becomes
-  /// the highest of the bits, so that no count comes back to 0. A volume is taken to hold a point up
-  /// to kLayers times. The stencil then says whether, not how often. Not with the appendix's
+  /// the highest of the bits, so that no count comes back to 0. A volume is taken to hold a point
+  /// up to kLayers times. The stencil then says whether, not how often. Not with the appendix's
   /// saturating operations, which have an end of their own.
   bool in_batches = false;
   /// All casters are in the depth buffer: front caps of z-pass volumes are left out, where they

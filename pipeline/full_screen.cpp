@@ -51,7 +51,8 @@ void flag_counts(raster::Frame& frame, std::uint8_t counts, std::uint8_t bits) {
                 .read_mask = counts,
                 .write_mask = bits,
                 .pass = raster::StencilOp::replace},
-               std::bit_floor(bits), "counts become bit " + std::to_string(std::bit_width(bits) - 1));
+               std::bit_floor(bits),
+               "counts become bit " + std::to_string(std::bit_width(bits) - 1));
 }
 
 void drop_flagged(raster::Frame& frame) {

@@ -94,10 +94,10 @@ class Rays final : public Contender {
  public:
   Rays(const Shared& shared, int samples) : shared_(shared), samples_(samples) {}
   Charted measure() override {
-    return charted(shared_,
-                   samples_ == kSamples ? shared_.by_rays
-                                        : shared_.picture(shared_.cast(samples_).pixels),
-                   "rays", fmt::format("Embree rays, {} a patch", samples_));
+    return charted(
+        shared_,
+        samples_ == kSamples ? shared_.by_rays : shared_.picture(shared_.cast(samples_).pixels),
+        "rays", fmt::format("Embree rays, {} a patch", samples_));
   }
   double frame_ms() override {
     ar::Stopwatch watch;
@@ -174,7 +174,8 @@ std::vector<std::unique_ptr<Contender>> RoomCase::contenders() {
   std::vector<std::unique_ptr<Contender>> out;
   for (DifferentialSetting& setting : differential_settings())
     out.push_back(std::make_unique<Differential>(*shared_, std::move(setting)));
-  for (const int samples : {1, 4, kSamples}) out.push_back(std::make_unique<Rays>(*shared_, samples));
+  for (const int samples : {1, 4, kSamples})
+    out.push_back(std::make_unique<Rays>(*shared_, samples));
   out.push_back(std::make_unique<Nothing>(*shared_));
   return out;
 }

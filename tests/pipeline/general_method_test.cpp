@@ -107,5 +107,46 @@ TEST(GeneralMethod, PictureIsTheSumOfTheLightsThatReachAPoint) {
   EXPECT_LT(wrong, tested / 500);
 }
 
+/// So many boxes one above the other, a ground below, all in the light's way.
+Scene tower(int boxes) {
+  Scene scene;
+  scene.objects.push_back(
+      {.name = "ground", .model = test::model_of(test::square_mesh(3.0f)), .casts = false});
+  const auto box = test::model_of(test::box_mesh({0.4f, 0.0005f, 0.4f}));
+  for (int i = 0; i < boxes; ++i)
+    scene.objects.push_back(
+        {.name = "box",
+         .model = box,
+         .world_from_model = test::placed({0.0f, 0.5f + 0.0015f * static_cast<float>(i), 0.0f})});
+  scene.lights.push_back({.name = "sun", .position = {0.0f, 1.0f, 0.0f, 0.0f}});
+  return scene;
+}
+
+// Oracle: closed form. Under a tower of any height lies the shadow of one of its boxes; 8 bits that
+// wrap would count 256 of them as none.
+TEST(GeneralMethod, AnyNumberOfVolumesHidesTheLight) {
+  const Camera camera = test::look({2.0f, 1.2f, 2.5f}, {0, 0.2f, 0}, kWidth, kHeight);
+  const auto shadowed = [&](int boxes, VolumeMethod method) {
+    const Scene scene = tower(boxes);
+    Scene unlit = scene;
+    for (Object& object : unlit.objects) object.casts = false;
+    Picture with, without;
+    raster::execute(record_general(scene, camera, {&with.color, &with.depth, &with.stencil},
+                                   {.method = method}));
+    draw(without, unlit, camera);
+    std::size_t pixels = 0;
+    // Of the ground alone, which the tower does not hide there.
+    for (int y = 0; y < kHeight / 2; ++y)
+      for (int x = 0; x < kWidth; ++x) pixels += with.color.at(x, y) != without.color.at(x, y);
+    return pixels;
+  };
+  const std::size_t one = shadowed(1, VolumeMethod::zfail);
+  EXPECT_GT(one, 500u);
+  for (const VolumeMethod method :
+       {VolumeMethod::zfail, VolumeMethod::zpass, VolumeMethod::automatic})
+    for (const int boxes : {85, 86, 127, 128, 255, 256, 257, 512})
+      EXPECT_EQ(shadowed(boxes, method), one) << boxes;
+}
+
 }  // namespace
 }  // namespace gnomon::pipeline
