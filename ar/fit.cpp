@@ -1,7 +1,7 @@
 #include "ar/fit.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,6 +17,12 @@ namespace {
 /// An option that has nothing to count is tried only if it takes so much less of the exact one's
 /// time: less than that, two measurements of one thing differ by.
 constexpr double kWorthwhile = 0.05;
+/// And more than so many times what a frame's time varies by (median absolute deviation).
+constexpr double kTimesNoise = 3.0;
+
+struct Saving {
+  double ms = 0.0, noise_ms = 0.0, of_ms = 0.0;
+};
 
 std::unique_ptr<FitDrawing> make_drawing(const SceneFile& file,
                                          std::vector<NamedPicture> photographs,
@@ -33,6 +39,8 @@ std::unique_ptr<FitDrawing> make_drawing(const SceneFile& file,
 struct Ordered {
   FitItem item;
   double saves_ms = 0.0;
+  /// What it is ordered by.
+  double rank_ms = 0.0;
 };
 
 }  // namespace
@@ -74,48 +82,63 @@ struct Fitter::Impl {
 
   double error_of(const FitScene& scene) { return error_in(draw(scene).pictures); }
 
-  /// The median time, and what else a frame shows.
-  FitState measure(const FitScene& scene) {
-    const FitPictures warm = draw(scene);
-    std::vector<double> times;
-    for (int i = 0; i < options.repeat; ++i) times.push_back(draw(scene).ms);
-    return {.error = error_in(warm.pictures),
-            .ms = median(std::move(times)),
-            .passes = warm.passes,
+  FitState state_of(const FitScene& scene) {
+    const FitPictures pictures = draw(scene);
+    return {.error = error_in(pictures.pictures),
+            .ms = 0.0,
+            .passes = pictures.passes,
             .totals = fit_totals(scene)};
   }
 
-  double time_with(const FitOption& option) {
+  FitScene given_with(const FitOption& option) const {
     FitScene scene = given;
     option.apply(scene);
-    return measure(scene).ms;
+    return scene;
   }
 
-  /// Options that have nothing to count: by time, those that are not worth it left out. The exact
-  /// one stays last, and the given one stays.
-  double order_by_time(FitItem& item) {
-    const std::string exact_name = item.options.back().name,
-                      given_name = item.options[item.given].name;
-    const double exact_ms = time_with(item.options.back());
-    std::vector<std::pair<double, FitOption>> timed;
-    for (const FitOption& option : item.options) {
-      if (option.name == exact_name) continue;
-      const double ms = time_with(option);
-      if (ms < (1.0 - kWorthwhile) * exact_ms || option.name == given_name)
-        timed.emplace_back(ms, option);
+  /// How much less time a frame takes by the second scene than by the first. They are drawn in
+  /// turns, so that a machine that becomes slower does so for both.
+  Saving saving(const FitScene& from, const FitScene& to) {
+    draw(from);
+    draw(to);
+    std::vector<double> before, after, between;
+    for (int i = 0; i < options.repeat; ++i) {
+      before.push_back(draw(from).ms);
+      after.push_back(draw(to).ms);
+      between.push_back(before.back() - after.back());
     }
-    std::stable_sort(timed.begin(), timed.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    const FitOption last = item.options.back();
+    Saving saving{.ms = median(between), .noise_ms = 0.0, .of_ms = median(before)};
+    for (double& difference : between) difference = std::abs(difference - saving.ms);
+    saving.noise_ms = median(std::move(between));
+    return saving;
+  }
+
+  /// Options that have nothing to count: those that are faster than the given one beyond doubt, the
+  /// fastest first, then the given one, then the exact one unless that is the given one. Returns
+  /// what the fastest saves.
+  double order_by_time(FitItem& item) {
+    const FitOption given_one = item.options[item.given], exact_one = item.options.back();
+    std::vector<std::pair<double, FitOption>> worthwhile;
+    for (std::size_t i = 0; i < item.options.size(); ++i) {
+      if (i == item.given) continue;
+      const Saving saved = saving(given, given_with(item.options[i]));
+      if (saved.ms > std::max(kWorthwhile * saved.of_ms, kTimesNoise * saved.noise_ms))
+        worthwhile.emplace_back(saved.ms, item.options[i]);
+    }
+    std::stable_sort(worthwhile.begin(), worthwhile.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
     item.options.clear();
-    for (auto& [ms, option] : timed)
-      if (ms < (1.0 - kWorthwhile) * exact_ms) item.options.push_back(std::move(option));
-    // A given option that takes as long as the exact one is no option, but it has a name.
+    for (const auto& [ms, option] : worthwhile) item.options.push_back(option);
     item.given = item.options.size();
-    for (std::size_t i = 0; i < item.options.size(); ++i)
-      if (item.options[i].name == given_name) item.given = i;
-    item.options.push_back(last);
-    return item.options.size() > 1 ? exact_ms - timed.front().first : 0.0;
+    item.options.push_back(given_one);
+    // What is exact ends the search, whatever else is given.
+    const auto exact_at = std::ranges::find(item.options, exact_one.name, &FitOption::name);
+    if (exact_at == item.options.end())
+      item.options.push_back(exact_one);
+    else
+      item.options.erase(exact_at + 1, item.options.end());
+    item.given = std::min(item.given, item.options.size());
+    return worthwhile.empty() ? 0.0 : worthwhile.front().first;
   }
 
   /// What saves most comes first, while there is most of the bound left.
@@ -124,17 +147,25 @@ struct Fitter::Impl {
         .photographs = photographs, .placed = drawing->placed(), .passes = most_passes};
     std::vector<Ordered> items;
     std::vector<FitItem> all = fit_items(given, survey);
-    const double given_ms = measure(given).ms;
     const std::size_t steps = 2 * all.size();
     for (FitItem& item : all) {
       tell(items.size(), steps);
-      Ordered next{std::move(item), 0.0};
-      next.saves_ms = next.item.unit.empty() ? order_by_time(next.item)
-                                             : given_ms - time_with(next.item.options.front());
+      item.given_name = item.options[item.given].name;
+      item.given_amount = item.options[item.given].amount;
+      Ordered next{.item = std::move(item)};
+      next.saves_ms = next.item.unit.empty()
+                          ? order_by_time(next.item)
+                          : saving(given, given_with(next.item.options.front())).ms;
+      // A phantom is looked at before its shadow, which goes with it.
+      next.rank_ms = next.saves_ms;
+      if (next.item.object)
+        for (const Ordered& other : items)
+          if (other.item.object == next.item.object)
+            next.rank_ms = std::min(next.rank_ms, other.rank_ms);
       items.push_back(std::move(next));
     }
     std::stable_sort(items.begin(), items.end(),
-                     [](const Ordered& a, const Ordered& b) { return a.saves_ms > b.saves_ms; });
+                     [](const Ordered& a, const Ordered& b) { return a.rank_ms > b.rank_ms; });
     return items;
   }
 
@@ -144,12 +175,11 @@ struct Fitter::Impl {
 
   /// The least option with which the whole picture stays within the bound goes into `scene`.
   FitFinding reduce(const FitItem& item, FitScene& scene) {
-    const FitOption& given_option = item.options[item.given];
     FitFinding finding{.item = item.name,
                        .unit = item.unit,
-                       .given = given_option.name,
+                       .given = item.given_name,
                        .taken = {},
-                       .given_amount = given_option.amount,
+                       .given_amount = item.given_amount,
                        .taken_amount = 0.0,
                        .saves_ms = 0.0,
                        .next = {},
@@ -198,9 +228,9 @@ struct Fitter::Impl {
       if (gone) {
         finding = {.item = item.name,
                    .unit = item.unit,
-                   .given = item.options[item.given].name,
+                   .given = item.given_name,
                    .taken = "nothing",
-                   .given_amount = item.options[item.given].amount,
+                   .given_amount = item.given_amount,
                    .taken_amount = 0.0,
                    .saves_ms = 0.0,
                    .next = {},
@@ -212,8 +242,11 @@ struct Fitter::Impl {
       finding.saves_ms = items[i].saves_ms;
       result.findings.push_back(std::move(finding));
     }
-    result.before = measure(given);
-    result.after = measure(result.fitted);
+    const Saving saved = saving(given, result.fitted);
+    result.before = state_of(given);
+    result.after = state_of(result.fitted);
+    result.before.ms = saved.of_ms;
+    result.after.ms = saved.of_ms - saved.ms;
     if (!(result.after.error <= options.bound.value))
       throw InputError(fmt::format("{}: the result has an error of {}, outside the bound",
                                    one_line(given.file.file.string()),

@@ -24,7 +24,8 @@ namespace gnomon::ar {
 
 struct FitOptions {
   ErrorBound bound;
-  /// Frames that a time is the median of, after one that is not counted.
+  /// Frames that a time is the median of, after one that is not counted, in turns with the scene
+  /// that it is compared with.
   int repeat = 5;
   /// 0: as many as the machine has.
   int threads = 0;
@@ -54,7 +55,8 @@ struct FitFinding {
 struct FitState {
   /// The largest of all views against the exact scene.
   double error = 0.0;
-  /// The median of a frame's time, all views together.
+  /// Of a frame, all views together: the given scene's median; the fitted one's is that less the
+  /// median of what frames drawn in turns differ by.
   double ms = 0.0;
   std::size_t passes = 0;
   FitTotals totals;

@@ -27,8 +27,10 @@ struct FitItem {
   std::string unit;
   /// The least first; the last is the exact scene's.
   std::vector<FitOption> options;
-  /// The option that the scene came with.
+  /// The option that the scene came with; as many as there are where it was left out.
   std::size_t given = 0;
+  std::string given_name = {};
+  double given_amount = 0.0;
   /// Of one object: its index, and nothing to do once the object is dropped.
   std::optional<std::size_t> object;
 };

@@ -1,5 +1,7 @@
 // Views that are photographs: by volumes, or by differential shadows.
-#include <optional>
+#include <algorithm>
+#include <array>
+#include <memory>
 #include <tuple>
 #include <utility>
 
@@ -96,6 +98,29 @@ class Photographs : public FitDrawing {
   std::set<std::string> placed_;
 };
 
+/// The two last of a kind that were made, since scenes are timed in turns.
+template <class Key, class Made>
+class LastTwo {
+ public:
+  template <class Make>
+  Made& get(const Key& key, const Make& make) {
+    if (!entries_[0].made || entries_[0].key != key) std::swap(entries_[0], entries_[1]);
+    if (!entries_[0].made || entries_[0].key != key) {
+      entries_[0].made.reset();
+      entries_[0].made = std::make_unique<Made>(make());
+      entries_[0].key = key;
+    }
+    return *entries_[0].made;
+  }
+
+ private:
+  struct Entry {
+    Key key{};
+    std::unique_ptr<Made> made;
+  };
+  std::array<Entry, 2> entries_;
+};
+
 class ByVolumes : public Photographs {
  public:
   using Photographs::Photographs;
@@ -110,16 +135,13 @@ class ByVolumes : public Photographs {
         augment_options(scene.file, {.threads = threads(), .masks = false});
     const Key key{options.samples, options.method, options.extrusion.kind,
                   options.extrusion.radius_m};
-    if (augmenters_.empty()) augmenters_.resize(view_count());
-    auto& [made_with, augmenter] = augmenters_[i];
-    if (!augmenter || made_with != key) {
-      augmenter.emplace(view(i).lens, options);
-      made_with = key;
-    }
-    return augmenter->augment(picture, with_fit(view(i).placed, scene), view(i).world_from_camera);
+    augmenters_.resize(view_count());
+    Augmenter& augmenter =
+        augmenters_[i].get(key, [&] { return Augmenter(view(i).lens, options); });
+    return augmenter.augment(picture, with_fit(view(i).placed, scene), view(i).world_from_camera);
   }
 
-  std::vector<std::pair<Key, std::optional<Augmenter>>> augmenters_;
+  std::vector<LastTwo<Key, Augmenter>> augmenters_;
 };
 
 class ByDifference : public Photographs {
@@ -150,23 +172,20 @@ class ByDifference : public Photographs {
                   s.method.mask,
                   s.method.map_size,
                   s.method.self_shadows};
-    if (augmenters_.empty()) augmenters_.resize(view_count());
-    auto& [made_with, augmenter] = augmenters_[i];
-    if (!augmenter || made_with != key) {
-      augmenter.reset();
-      augmenter.emplace(view(i).lens, lit_, view(i).world_from_camera, s);
-      made_with = key;
-    }
-    augmenter->set_passes(s.method.take.passes);
+    augmenters_.resize(view_count());
+    DifferentialAugmenter& augmenter = augmenters_[i].get(key, [&] {
+      return DifferentialAugmenter(view(i).lens, lit_, view(i).world_from_camera, s);
+    });
+    augmenter.set_passes(s.method.take.passes);
     Augmented drawn =
-        augmenter->augment(picture, with_fit(view(i).placed, scene), view(i).world_from_camera);
-    out.passes = std::max(out.passes, augmenter->report().shadows);
+        augmenter.augment(picture, with_fit(view(i).placed, scene), view(i).world_from_camera);
+    out.passes = std::max(out.passes, augmenter.report().shadows);
     return drawn;
   }
 
   SessionOptions options_;
   std::shared_ptr<const pipeline::LitScene> lit_;
-  std::vector<std::pair<Key, std::optional<DifferentialAugmenter>>> augmenters_;
+  std::vector<LastTwo<Key, DifferentialAugmenter>> augmenters_;
 };
 
 }  // namespace

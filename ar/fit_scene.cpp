@@ -95,21 +95,26 @@ FitTotals fit_totals(const FitScene& scene) {
 pipeline::Scene with_fit(const pipeline::Scene& placed, const FitScene& scene) {
   pipeline::Scene out = placed;
   out.objects.clear();
-  for (const pipeline::Object& object : placed.objects) {
-    const auto named = std::ranges::find(scene.file.objects, object.name, &SceneObject::name);
+  for (pipeline::Light& light : out.lights) {
+    light.shadow_of_object.clear();
+    const auto named = std::ranges::find(scene.file.lights, light.name, &pipeline::Light::name);
+    if (named != scene.file.lights.end()) light.samples = named->samples;
+  }
+  for (std::size_t i = 0; i < placed.objects.size(); ++i) {
+    const auto named =
+        std::ranges::find(scene.file.objects, placed.objects[i].name, &SceneObject::name);
     if (named == scene.file.objects.end()) continue;
     const FitObject& fit =
         scene.objects[static_cast<std::size_t>(named - scene.file.objects.begin())];
     if (!fit.kept) continue;
-    out.objects.push_back(object);
+    out.objects.push_back(placed.objects[i]);
     out.objects.back().model = fit.models.model;
     out.objects.back().casts = fit.casts;
     out.objects.back().shadow_model = fit.casts ? fit.models.shadow_model : nullptr;
     out.objects.back().shadow_displace = fit.casts ? fit.models.shadow_displace : 0.0f;
-  }
-  for (pipeline::Light& light : out.lights) {
-    const auto named = std::ranges::find(scene.file.lights, light.name, &pipeline::Light::name);
-    if (named != scene.file.lights.end()) light.samples = named->samples;
+    for (std::size_t l = 0; l < out.lights.size(); ++l)
+      if (!placed.lights[l].shadow_of_object.empty())
+        out.lights[l].shadow_of_object.push_back(placed.lights[l].shadow_of_object[i]);
   }
   return out;
 }

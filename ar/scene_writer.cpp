@@ -1,5 +1,7 @@
 #include "ar/scene_writer.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
@@ -66,6 +68,43 @@ class ModelFolder {
   std::map<std::shared_ptr<const pipeline::Model>, std::string> written_;
 };
 
+bool is_of_word(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' ||
+         c == '_' || c == '+';
+}
+
+/// The text with each number in its fewest digits: toml++ writes 0.1 as 0.10000000000000001.
+std::string with_short_numbers(const std::string& text) {
+  std::string out;
+  char quote = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (quote == 0 && (c == '\'' || c == '"'))
+      quote = c;
+    else if (c == quote)
+      quote = 0;
+    else if (quote == '"' && c == '\\')
+      out += text[i++];
+    const bool begins = quote == 0 && c >= '0' && c <= '9' && (i == 0 || !is_of_word(text[i - 1]));
+    std::size_t end = i + 1;
+    while (begins && end < text.size() && is_of_word(text[end])) ++end;
+    const std::string_view word(text.data() + i, end - i);
+    double value = 0.0;
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (begins && word.find('.') != word.npos && error == std::errc() &&
+        rest == word.data() + word.size()) {
+      std::string digits = fmt::format("{}", value);
+      // A float stays one when it is read.
+      if (digits.find_first_of(".e") == digits.npos) digits += ".0";
+      out += digits.size() < word.size() ? digits : std::string(word);
+      i = end;
+    } else {
+      out += text[i++];
+    }
+  }
+  return out;
+}
+
 class Writer {
  public:
   Writer(const FitScene& given, const FitScene& fitted, const fs::path& folder,
@@ -88,11 +127,12 @@ class Writer {
     edit_shadow();
     edit_differential();
     std::ostringstream text;
-    text << "# Written by gnomon fit from " << one_line(given_.file.file.filename().string())
-         << ": what the scene needs within its bound (docs/fit.md).\n"
-            "# That file's comments are not here.\n"
-         << root_ << '\n';
-    write_file(folder_ / "scene.toml", text.str());
+    text << root_ << '\n';
+    write_file(folder_ / "scene.toml",
+               fmt::format("# Written by gnomon fit from {}: what the scene needs within its bound "
+                           "(docs/fit.md).\n# Comments of that file are not here.\n{}",
+                           one_line(given_.file.file.filename().string()),
+                           with_short_numbers(text.str())));
   }
 
  private:
@@ -157,18 +197,25 @@ class Writer {
     return false;
   }
 
+  /// Where tables change or go, all are written anew, light by light.
   void edit_casters() {
-    if (fitted_.file.casters != given_.file.casters) {
-      toml::array tables;
-      for (const SceneCaster& caster : fitted_.file.casters) tables.push_back(caster_table(caster));
-      set(root_, "caster", std::move(tables));
+    const std::vector<SceneCaster>& casters = fitted_.file.casters;
+    const auto gone = [this](const SceneCaster& caster) { return is_dropped(caster.node); };
+    if (casters == given_.file.casters && std::ranges::none_of(casters, gone)) return;
+    toml::array tables;
+    for (const pipeline::Light& light : fitted_.file.lights) {
+      bool any = false;
+      for (const SceneCaster& caster : casters) {
+        if (caster.light != light.name || gone(caster)) continue;
+        tables.push_back(caster_table(caster));
+        any = true;
+      }
+      // A light that no table speaks of has the shadows of all objects.
+      if (!any)
+        tables.push_back(
+            caster_table({.light = light.name, .method = pipeline::ShadowMethod::none}));
     }
-    toml::array* tables = root_["caster"].as_array();
-    if (tables == nullptr) return;
-    for (std::size_t i = tables->size(); i-- > 0;)
-      if (is_dropped((*(*tables)[i].as_table())["node"].value_or(std::string())))
-        tables->erase(tables->begin() + static_cast<std::ptrdiff_t>(i));
-    if (tables->empty()) root_.erase("caster");
+    set(root_, "caster", std::move(tables));
   }
 
   static toml::table caster_table(const SceneCaster& caster) {
