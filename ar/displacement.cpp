@@ -35,14 +35,63 @@ std::vector<Offset> offsets_within(int radius) {
   return offsets;
 }
 
+/// The least and the largest value of each channel in tiles as wide as the radius: a value that is
+/// in none of the nine tiles about a pixel need not be looked for.
+class TileRanges {
+ public:
+  TileRanges(const Image& picture, int side)
+      : side_(side),
+        channels_(picture.channels),
+        columns_((picture.width + side - 1) / side),
+        rows_((picture.height + side - 1) / side),
+        ranges_(std::size_t(columns_) * rows_ * channels_, Range{255, 0}) {
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        for (int c = 0; c < channels_; ++c) {
+          Range& range = ranges_[index(x / side, y / side, c)];
+          range.least = std::min(range.least, picture.at(x, y)[c]);
+          range.most = std::max(range.most, picture.at(x, y)[c]);
+        }
+      }
+    }
+  }
+
+  bool may_hold(const std::uint8_t* value, int x, int y, int tolerance) const {
+    for (int c = 0; c < channels_; ++c) {
+      int least = 255, most = 0;
+      for (int ty = std::max(0, y / side_ - 1); ty <= std::min(rows_ - 1, y / side_ + 1); ++ty) {
+        for (int tx = std::max(0, x / side_ - 1); tx <= std::min(columns_ - 1, x / side_ + 1);
+             ++tx) {
+          least = std::min<int>(least, ranges_[index(tx, ty, c)].least);
+          most = std::max<int>(most, ranges_[index(tx, ty, c)].most);
+        }
+      }
+      if (value[c] + tolerance < least || value[c] - tolerance > most) return false;
+    }
+    return true;
+  }
+
+ private:
+  struct Range {
+    std::uint8_t least, most;
+  };
+  std::size_t index(int tx, int ty, int c) const {
+    return (std::size_t(ty) * columns_ + tx) * channels_ + c;
+  }
+
+  int side_, channels_, columns_, rows_;
+  std::vector<Range> ranges_;
+};
+
 class Finder {
  public:
   Finder(const Image& picture, const DisplacementOptions& options, std::span<const Offset> offsets)
-      : picture_(picture), options_(options), offsets_(offsets) {}
+      : picture_(picture), options_(options), offsets_(offsets), ranges_(picture, options.radius) {}
 
   /// From (x, y) to the nearest place that has `value`; infinite beyond the radius.
   double distance(const std::uint8_t* value, int x, int y) const {
     double best = kInfinity;
+    if (!ranges_.may_hold(value, x, y, options_.tolerance)) return best;
     for (const Offset& offset : offsets_) {
       // A line between two centres comes at most one pixel nearer than its farther end.
       if (offset.distance - 1.0 >= best) break;
@@ -54,7 +103,8 @@ class Finder {
   }
 
  private:
-  static constexpr int kSteps[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  /// Each line between neighbours once, from its left or upper end.
+  static constexpr int kSteps[][2] = {{1, 0}, {0, 1}};
 
   bool is_inside(int x, int y) const {
     return x >= 0 && y >= 0 && x < picture_.width && y < picture_.height;
@@ -86,6 +136,7 @@ class Finder {
   const Image& picture_;
   const DisplacementOptions& options_;
   std::span<const Offset> offsets_;
+  TileRanges ranges_;
 };
 
 /// Groups of pixels that grow as pixels are added.

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,6 +27,10 @@ struct Saving {
   double ms = 0.0, noise_ms = 0.0, of_ms = 0.0;
 };
 
+bool is_worthwhile(const Saving& saved) {
+  return saved.ms > std::max(kWorthwhile * saved.of_ms, kTimesNoise * saved.noise_ms);
+}
+
 std::unique_ptr<FitDrawing> make_drawing(const SceneFile& file,
                                          std::vector<NamedPicture> photographs,
                                          const FitOptions& options) {
@@ -36,12 +43,37 @@ std::unique_ptr<FitDrawing> make_drawing(const SceneFile& file,
 }
 
 /// An item, and what was measured of it alone.
-struct Ordered {
+struct Measured {
   FitItem item;
   double saves_ms = 0.0;
-  /// What it is ordered by.
-  double rank_ms = 0.0;
 };
+
+struct Found {
+  FitScene scene;
+  std::vector<FitFinding> findings = {};
+};
+
+/// Which item takes first of the error that is allowed. What saves most is the natural order; but
+/// where the first item takes all, the others can have nothing. The list has models first, and of
+/// differential shadows the sources before the passes that are made of them.
+enum class Order { most_first, as_listed };
+constexpr Order kOrders[] = {Order::most_first, Order::as_listed};
+
+std::vector<std::size_t> in_order(const std::vector<Measured>& items, Order order) {
+  std::vector<double> keys;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    keys.push_back(order == Order::most_first ? -items[i].saves_ms : 0.0);
+    // A phantom is looked at before its shadow, which goes with it.
+    for (std::size_t j = 0; j < i; ++j)
+      if (items[i].item.object && items[j].item.object == items[i].item.object)
+        keys[i] = std::max(keys[i], keys[j]);
+  }
+  std::vector<std::size_t> indices(items.size());
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  std::stable_sort(indices.begin(), indices.end(),
+                   [&](std::size_t a, std::size_t b) { return keys[a] < keys[b]; });
+  return indices;
+}
 
 }  // namespace
 
@@ -52,6 +84,8 @@ struct Fitter::Impl {
   std::unique_ptr<FitDrawing> drawing;
   std::vector<Image> reference, untouched;
   std::size_t most_passes = 0, drawn = 0;
+  /// Of the progress that is told.
+  std::size_t step = 0, steps = 0;
   bool photographs;
 
   Impl(const SceneFile& file, std::vector<NamedPicture> pictures, const FitOptions& o)
@@ -122,8 +156,7 @@ struct Fitter::Impl {
     for (std::size_t i = 0; i < item.options.size(); ++i) {
       if (i == item.given) continue;
       const Saving saved = saving(given, given_with(item.options[i]));
-      if (saved.ms > std::max(kWorthwhile * saved.of_ms, kTimesNoise * saved.noise_ms))
-        worthwhile.emplace_back(saved.ms, item.options[i]);
+      if (is_worthwhile(saved)) worthwhile.emplace_back(saved.ms, item.options[i]);
     }
     std::stable_sort(worthwhile.begin(), worthwhile.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -141,50 +174,32 @@ struct Fitter::Impl {
     return worthwhile.empty() ? 0.0 : worthwhile.front().first;
   }
 
-  /// What saves most comes first, while there is most of the bound left.
-  std::vector<Ordered> ordered_items() {
-    FitSurvey survey{
+  /// Each measured alone.
+  std::vector<Measured> measured_items() {
+    const FitSurvey survey{
         .photographs = photographs, .placed = drawing->placed(), .passes = most_passes};
-    std::vector<Ordered> items;
     std::vector<FitItem> all = fit_items(given, survey);
-    const std::size_t steps = 2 * all.size();
+    steps = (1 + std::size(kOrders)) * all.size();
+    std::vector<Measured> items;
     for (FitItem& item : all) {
-      tell(items.size(), steps);
+      tell_next();
       item.given_name = item.options[item.given].name;
       item.given_amount = item.options[item.given].amount;
-      Ordered next{.item = std::move(item)};
+      Measured next{.item = std::move(item)};
       next.saves_ms = next.item.unit.empty()
                           ? order_by_time(next.item)
                           : saving(given, given_with(next.item.options.front())).ms;
-      // A phantom is looked at before its shadow, which goes with it.
-      next.rank_ms = next.saves_ms;
-      if (next.item.object)
-        for (const Ordered& other : items)
-          if (other.item.object == next.item.object)
-            next.rank_ms = std::min(next.rank_ms, other.rank_ms);
       items.push_back(std::move(next));
     }
-    std::stable_sort(items.begin(), items.end(),
-                     [](const Ordered& a, const Ordered& b) { return a.rank_ms > b.rank_ms; });
     return items;
   }
 
-  void tell(std::size_t done, std::size_t all) const {
-    if (options.progress) options.progress(done, all);
+  void tell_next() {
+    if (options.progress) options.progress(std::min(step++, steps), steps);
   }
 
   /// The least option with which the whole picture stays within the bound goes into `scene`.
-  FitFinding reduce(const FitItem& item, FitScene& scene) {
-    FitFinding finding{.item = item.name,
-                       .unit = item.unit,
-                       .given = item.given_name,
-                       .taken = {},
-                       .given_amount = item.given_amount,
-                       .taken_amount = 0.0,
-                       .saves_ms = 0.0,
-                       .next = {},
-                       .next_error = 0.0,
-                       .outcome = {}};
+  void reduce(const FitItem& item, FitScene& scene, FitFinding& finding) {
     std::size_t taken = item.options.size() - 1;
     for (std::size_t i = 0; i < taken; ++i) {
       FitScene trial = scene;
@@ -205,43 +220,47 @@ struct Fitter::Impl {
                       : taken < item.given  ? "reduced"
                       : taken == item.given ? "kept"
                                             : "raised";
-    return finding;
+  }
+
+  /// One item after another, from the exact scene on.
+  Found reduce_all(const std::vector<Measured>& items, Order order) {
+    Found found{.scene = exact};
+    for (const std::size_t i : in_order(items, order)) {
+      tell_next();
+      const FitItem& item = items[i].item;
+      const bool gone = item.object && !found.scene.objects[*item.object].kept;
+      FitFinding finding{.item = item.name,
+                         .unit = item.unit,
+                         .given = item.given_name,
+                         .taken = "nothing",
+                         .given_amount = item.given_amount,
+                         .saves_ms = items[i].saves_ms,
+                         .outcome = "gone with the phantom"};
+      if (!gone) reduce(item, found.scene, finding);
+      found.findings.push_back(std::move(finding));
+    }
+    return found;
+  }
+
+  /// Of all orders' results the one whose frame is the fastest; the first where that is in doubt.
+  Found best_of_orders(const std::vector<Measured>& items) {
+    Found best = reduce_all(items, kOrders[0]);
+    for (const Order order : std::span(kOrders).subspan(1)) {
+      Found other = reduce_all(items, order);
+      if (is_worthwhile(saving(best.scene, other.scene))) best = std::move(other);
+    }
+    return best;
   }
 
   FitResult search() {
+    step = 0;
+    Found found = best_of_orders(measured_items());
     FitResult result{.given = given,
-                     .fitted = exact,
-                     .before = {},
-                     .after = {},
-                     .findings = {},
-                     .left_out = {},
-                     .notes = notes,
-                     .drawn = 0};
+                     .fitted = std::move(found.scene),
+                     .findings = std::move(found.findings),
+                     .notes = notes};
     for (const SceneObject& object : given.file.objects)
       if (!drawing->placed().contains(object.name)) result.left_out.push_back(object.name);
-    const std::vector<Ordered> items = ordered_items();
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      tell(items.size() + i, 2 * items.size());
-      const FitItem& item = items[i].item;
-      const bool gone = item.object && !result.fitted.objects[*item.object].kept;
-      FitFinding finding;
-      if (gone) {
-        finding = {.item = item.name,
-                   .unit = item.unit,
-                   .given = item.given_name,
-                   .taken = "nothing",
-                   .given_amount = item.given_amount,
-                   .taken_amount = 0.0,
-                   .saves_ms = 0.0,
-                   .next = {},
-                   .next_error = 0.0,
-                   .outcome = "gone with the phantom"};
-      } else {
-        finding = reduce(item, result.fitted);
-      }
-      finding.saves_ms = items[i].saves_ms;
-      result.findings.push_back(std::move(finding));
-    }
     const Saving saved = saving(given, result.fitted);
     result.before = state_of(given);
     result.after = state_of(result.fitted);

@@ -64,7 +64,9 @@ FitScene exact_scene(const FitScene& given) {
   if (exact.file.differential) {
     DifferentialSettings& settings = exact.file.differential->settings;
     settings.method.take.passes = kMostPasses;
-    settings.method.take.precision = pipeline::ShadowPrecision::radiance;
+    // Radiance is another way to put shadows into values, not a finer one.
+    if (settings.method.take.precision != pipeline::ShadowPrecision::radiance)
+      settings.method.take.precision = pipeline::ShadowPrecision::values;
     settings.method.mask = pipeline::ShadowMask::volumes;
     settings.light.transfer.power_share = 1.0;
     settings.light.prune_share = 0.0;

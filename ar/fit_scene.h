@@ -33,7 +33,7 @@ FitScene load_fit_scene(const SceneFile& file, std::vector<std::string>* notes =
 
 /// The scene with all on the exact side: every object casts with the model that is drawn; volumes
 /// counted and as long as need be; of differential shadows every source, a pass for each, whole
-/// occluders, volumes and floats.
+/// occluders, volumes and floats (values; radiance only where the scene says it).
 FitScene exact_scene(const FitScene& given);
 
 std::size_t triangle_count(const pipeline::Model& model);

@@ -124,13 +124,13 @@ FitItem light_samples_item(const FitScene& given, std::size_t i) {
 FitItem precision_item(const FitScene& given) {
   using pipeline::ShadowPrecision;
   FitItem item{.name = "precision", .unit = "steps", .options = {}, .given = 0, .object = {}};
-  const std::pair<const char*, ShadowPrecision> all[] = {{"bytes", ShadowPrecision::bytes},
-                                                         {"dithered", ShadowPrecision::dithered},
-                                                         {"values", ShadowPrecision::values},
-                                                         {"radiance", ShadowPrecision::radiance}};
+  std::vector<std::pair<const char*, ShadowPrecision>> all{{"bytes", ShadowPrecision::bytes},
+                                                           {"dithered", ShadowPrecision::dithered},
+                                                           {"values", ShadowPrecision::values}};
+  const ShadowPrecision own = given.file.differential->settings.method.take.precision;
+  if (own == ShadowPrecision::radiance) all = {{"radiance", own}};
   for (const auto& [name, precision] : all) {
-    if (precision == given.file.differential->settings.method.take.precision)
-      item.given = item.options.size();
+    if (precision == own) item.given = item.options.size();
     item.options.push_back(
         {name, static_cast<double>(item.options.size()), [precision = precision](FitScene& scene) {
            settings_of(scene).method.take.precision = precision;
@@ -142,7 +142,7 @@ FitItem precision_item(const FitScene& given) {
 /// The larger, the fewer shafts there are.
 FitItem prune_item(const FitScene& given) {
   FitItem item{.name = "light below which shafts are not cut",
-               .unit = "of a vertex's light",
+               .unit = "",
                .options = {},
                .given = 0,
                .object = {}};
@@ -212,8 +212,7 @@ FitItem occluders_item(const FitScene& given) {
                             }});
   };
   bool added = !has_own && most_given == largest;
-  for (double wanted = 12.0; wanted < static_cast<double>(largest);
-       wanted = std::ceil(wanted * 1.6)) {
+  for (double wanted = 12.0; wanted < static_cast<double>(largest); wanted *= 2.0) {
     const auto count = static_cast<std::size_t>(wanted);
     if (!added && count >= most_given) {
       as_given();
@@ -259,8 +258,13 @@ std::vector<FitItem> volume_items(const FitScene& given, bool photographs) {
 std::vector<FitItem> differential_items(const FitScene& given, std::size_t passes) {
   const DifferentialSettings& settings = given.file.differential->settings;
   std::vector<FitItem> items;
+  items.push_back(number_item("sources", "of all power", {0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95},
+                              settings.light.transfer.power_share, 1.0, "every patch",
+                              [](FitScene& scene, double value) {
+                                settings_of(scene).light.transfer.power_share = value;
+                              }));
   std::set<double> counts;
-  for (double count = 1.0; count < static_cast<double>(passes); count = std::ceil(count * 1.3))
+  for (double count = 1.0; count < static_cast<double>(passes); count = std::ceil(count * 1.5))
     counts.insert(count);
   items.push_back(
       number_item("passes", "passes", counts, static_cast<double>(settings.method.take.passes),
@@ -268,11 +272,6 @@ std::vector<FitItem> differential_items(const FitScene& given, std::size_t passe
                   [](FitScene& scene, double value) {
                     settings_of(scene).method.take.passes = static_cast<std::size_t>(value);
                   }));
-  items.push_back(number_item(
-      "sources", "of all power", {0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95},
-      settings.light.transfer.power_share, 1.0, "every patch", [](FitScene& scene, double value) {
-        settings_of(scene).light.transfer.power_share = value;
-      }));
   items.push_back(occluders_item(given));
   items.push_back(precision_item(given));
   items.push_back(prune_item(given));

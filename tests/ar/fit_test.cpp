@@ -176,8 +176,8 @@ TEST_F(Fit, ReplacesAShadowModelThatIsTooCoarse) {
 
 TEST_F(Fit, OfASceneByItselfFindsWhatEachLightNeeds) {
   std::string things = kThings;
-  things = things.substr(0, things.find("[[caster]]")) +
-           "[[caster]]\nmethod = \"map\"\nsize = 16\n";
+  things =
+      things.substr(0, things.find("[[caster]]")) + "[[caster]]\nmethod = \"map\"\nsize = 16\n";
   Fitter fitter(scene(things), {}, within("1px"));
   const FitResult result = fitter.search();
   EXPECT_GT(result.before.error, 1.0);
@@ -211,8 +211,9 @@ TEST_F(Fit, OfDifferentialShadowsFindsPassesSourcesAndOccluders) {
 }
 
 TEST_F(Fit, SaysWhatItNeeds) {
-  const SceneFile file = scene("[differential]\nlit_scene = \"scene.toml\"\n[[object]]\n"
-                               "name = \"ball\"\nrole = \"virtual\"\nmodel = \"ball.glb\"\n");
+  const SceneFile file = scene(
+      "[differential]\nlit_scene = \"scene.toml\"\n[[object]]\n"
+      "name = \"ball\"\nrole = \"virtual\"\nmodel = \"ball.glb\"\n");
   try {
     Fitter fitter(file, {}, within("1px"));
     FAIL() << "no photograph";
