@@ -1,11 +1,14 @@
 // What gnomon fit leaves of the examples, and what that costs in photographs that it never saw:
 // those with the virtual objects really there. Prints docs/fit.md's tables.
-// Usage: measure_fit SOURCES LIT_SCENE [BOUND...], where SOURCES is the project's folder and
-// LIT_SCENE what gnomon capture examples/soft --out LIT_SCENE wrote.
+// Usage: measure_fit SOURCES LIT_SCENE [BOUND or SCENE...], where SOURCES is the project's folder
+// and LIT_SCENE what gnomon capture examples/soft --out LIT_SCENE wrote.
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kOut = fs::temp_directory_path() / "gnomon_measure_fit";
+const fs::path kOut = fs::temp_directory_path() / fmt::format("gnomon_measure_fit_{}", getpid());
 /// Values by which a pixel of a soft shadow differs from the empty room's.
 constexpr int kSeen = 6;
 
@@ -39,10 +42,10 @@ const std::vector<Subject> kDesk = {{"01_torus_on_house", {"01_torus_on_house"}}
                                     {"02_house_on_torus", {"02_house_on_torus"}},
                                     {"03_tin_on_torus", {"03_tin_on_torus"}},
                                     {"04_torus_and_sphere_on_tin", {"04_torus_and_sphere_on_tin"}}};
-/// The box was fitted half a metre above the floor; the others are places that it was not fitted at.
+/// The box was fitted half a metre above the floor; the others are places that it was not fitted
+/// at.
 const std::vector<Subject> kSoft = {
-    {"box",
-     {"04_box_lifted_50cm", "03_box_lifted_25cm", "02_box_lifted_10cm", "01_box_lifted_0"}},
+    {"box", {"04_box_lifted_50cm", "03_box_lifted_25cm", "02_box_lifted_10cm", "01_box_lifted_0"}},
     {"suzanne", {"08_suzanne"}}};
 
 struct Truth {
@@ -118,8 +121,9 @@ void measure(const Subject& subject, const fs::path& sources, const std::string&
   const bool soft = given.differential.has_value();
   if (soft) given.differential->lit_scene = lit_scene;
   const ar::Image photograph = ar::read_image_rgb(folder / "background.png");
-  ar::Fitter fitter(given, {{"background.png", photograph}},
-                    {.bound = ar::parse_error_bound(bound), .repeat = 3, .lit_scene = soft ? lit_scene : ""});
+  ar::Fitter fitter(
+      given, {{"background.png", photograph}},
+      {.bound = ar::parse_error_bound(bound), .repeat = 3, .lit_scene = soft ? lit_scene : ""});
   const ar::FitResult result = fitter.search();
   fs::remove_all(kOut);
   fs::create_directories(kOut);
@@ -144,8 +148,9 @@ void measure(const Subject& subject, const fs::path& sources, const std::string&
                   : desk_truth(scene, truths / name, photograph);
     };
     const Truth a = truth(given), b = truth(fitted);
-    std::cout << fmt::format("truth | {} | {} | {:.2f} → {:.2f} | {:.3f} → {:.3f} | {:.4f} → {:.4f} |\n",
-                             name, bound, a.rmse, b.rmse, a.iou, b.iou, a.flip, b.flip);
+    std::cout << fmt::format(
+        "truth | {} | {} | {:.2f} → {:.2f} | {:.3f} → {:.3f} | {:.4f} → {:.4f} |\n", name, bound,
+        a.rmse, b.rmse, a.iou, b.iou, a.flip, b.flip);
   }
   std::cout << std::flush;
   for (const ar::FitFinding& finding : result.findings)
@@ -160,20 +165,27 @@ void measure(const Subject& subject, const fs::path& sources, const std::string&
 int main(int argc, char** argv) {
   using namespace gnomon;
   if (argc < 3) {
-    std::cerr << "usage: measure_fit SOURCES LIT_SCENE [BOUND...]\n";
+    std::cerr << "usage: measure_fit SOURCES LIT_SCENE [BOUND or SCENE...]\n";
     return 1;
   }
-  std::vector<std::string> bounds(argv + 3, argv + argc);
+  std::vector<std::string> bounds, scenes;
+  for (const std::string argument : std::span(argv + 3, argv + argc))
+    (argument.ends_with("px") || argument.ends_with("flip") ? bounds : scenes).push_back(argument);
   if (bounds.empty()) bounds = {"0.5px", "1px", "2px"};
+  const auto wanted = [&](const Subject& subject) {
+    return scenes.empty() || std::ranges::find(scenes, subject.scene) != scenes.end();
+  };
   try {
     for (const std::string& bound : bounds) {
       for (const Subject& subject : kSoft)
-        measure(subject, argv[1], "soft", argv[2], bound);
-      for (const Subject& subject : kDesk) measure(subject, argv[1], "desk", {}, bound);
+        if (wanted(subject)) measure(subject, argv[1], "soft", argv[2], bound);
+      for (const Subject& subject : kDesk)
+        if (wanted(subject)) measure(subject, argv[1], "desk", {}, bound);
     }
   } catch (const std::exception& error) {
     std::cerr << "measure_fit: " << error.what() << '\n';
     return 1;
   }
+  fs::remove_all(kOut);
   return 0;
 }
