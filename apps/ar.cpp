@@ -93,7 +93,8 @@ void add_ar(CLI::App& program) {
   command
       ->add_option(
           "--samples", arguments->session.samples,
-          "Drawn pixels a photograph's pixel, along x and y (0: 4 with lens distortion, else 2)")
+          "Drawn pixels a photograph's pixel, along x and y (0: the scene's, or 4 with lens "
+          "distortion, else 2)")
       ->check(CLI::Range(0, 8));
   command->add_option("--threads", arguments->session.threads, "Threads (0: all of the machine)")
       ->check(CLI::Range(0, 256));

@@ -20,6 +20,9 @@ void add_chart(CLI::App& program);
 /// gnomon compare A B: how much two pictures differ.
 void add_compare(CLI::App& program);
 
+/// gnomon fit SCENE: the least that a scene needs within an error.
+void add_fit(CLI::App& program);
+
 /// gnomon golden --verify: do the golden frames have their bytes on this machine?
 void add_golden(CLI::App& program);
 

@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
       "  gnomon capture examples/soft --out soft.lit\n"
       "  gnomon chart --out out\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
+      "  gnomon fit scene.toml --image photograph.png --error 1px --out out\n"
       "  gnomon mesh check model.glb\n"
       "  gnomon render scene.toml --out out\n"
       "  gnomon replay recorded.frame --out out\n"
@@ -49,6 +50,7 @@ int run(int argc, char** argv) {
   gnomon::apps::add_capture(program);
   gnomon::apps::add_chart(program);
   gnomon::apps::add_compare(program);
+  gnomon::apps::add_fit(program);
   gnomon::apps::add_golden(program);
   gnomon::apps::add_mesh(program);
   gnomon::apps::add_render(program);

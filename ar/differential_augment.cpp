@@ -155,6 +155,9 @@ DifferentialAugmenter::DifferentialAugmenter(DifferentialAugmenter&&) noexcept =
 
 const PinholeView& DifferentialAugmenter::view() const { return impl_->view; }
 const pipeline::LightPaths& DifferentialAugmenter::paths() const { return impl_->paths; }
+void DifferentialAugmenter::set_passes(std::size_t passes) {
+  impl_->settings.method.take.passes = passes;
+}
 const DifferentialReport& DifferentialAugmenter::report() const { return impl_->report; }
 
 Augmented DifferentialAugmenter::augment(const Image& photograph, const pipeline::Scene& objects,

@@ -193,9 +193,10 @@ class RayChecker {
 
 namespace {
 
-Rendered render(const SceneFile& file, const RenderOptions& options) {
+Rendered render(const SceneFile& file, const std::vector<ObjectModels>& models,
+                const RenderOptions& options, RenderMemory& memory) {
   Rendered out;
-  const SceneNodes nodes(file, load_models(file, &out.notes));
+  const SceneNodes nodes(file, models);
   out.left_out = nodes.left_out();
   const pipeline::Scene scene = nodes.scene();
   if (scene.objects.empty())
@@ -214,14 +215,12 @@ Rendered render(const SceneFile& file, const RenderOptions& options) {
   Buffers buffers(camera, pipeline::sample_lights(scene).size() == 1
                               ? raster::ColorFormat::rgba8
                               : raster::ColorFormat::rgba32f);
-  pipeline::TopologyCache topologies;
-  pipeline::MapMemory maps;
   const pipeline::VolumeMethod counting =
       options.counting.value_or(volume_method(file.shadow.method));
   const pipeline::GeneralOptions additive{.method = counting,
                                           .extrusion = extrusion(file.shadow.volume),
-                                          .topologies = &topologies,
-                                          .maps = &maps,
+                                          .topologies = &memory.topologies,
+                                          .maps = &memory.maps,
                                           .threads = options.threads};
   Stopwatch watch;
   const raster::Frame frame =
@@ -230,7 +229,7 @@ Rendered render(const SceneFile& file, const RenderOptions& options) {
           : pipeline::record_modulative(scene, camera, buffers.targets(),
                                         {.method = counting,
                                          .extrusion = additive.extrusion,
-                                         .topologies = &topologies,
+                                         .topologies = &memory.topologies,
                                          .threads = options.threads});
   out.record_ms = watch.lap_ms();
   if (options.frame) out.frame = raster::encode_frame(frame);
@@ -250,13 +249,23 @@ Rendered render(const SceneFile& file, const RenderOptions& options) {
 
 }  // namespace
 
-Rendered render_scene(const SceneFile& file, const RenderOptions& options) {
+Rendered render_scene(const SceneFile& file, const std::vector<ObjectModels>& models,
+                      const RenderOptions& options, RenderMemory& memory) {
   try {
-    return render(file, options);
+    return render(file, models, options, memory);
   } catch (const std::invalid_argument& misuse) {
     // What only the scene as a whole shows: nested scales, a lamp's planes.
     throw InputError(fmt::format("{}: {}", one_line(file.file.string()), misuse.what()));
   }
+}
+
+Rendered render_scene(const SceneFile& file, const RenderOptions& options) {
+  RenderMemory memory;
+  std::vector<std::string> notes;
+  const std::vector<ObjectModels> models = load_models(file, &notes);
+  Rendered out = render_scene(file, models, options, memory);
+  out.notes = std::move(notes);
+  return out;
 }
 
 }  // namespace gnomon::ar

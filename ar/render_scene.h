@@ -9,8 +9,11 @@
 #include "ar/image.h"
 #include "ar/pass_pictures.h"
 #include "ar/scene_file.h"
+#include "ar/scene_models.h"
 #include "pipeline/near_clip.h"
 #include "pipeline/scene.h"
+#include "pipeline/shadow_map.h"
+#include "pipeline/topology.h"
 
 namespace gnomon::ar {
 
@@ -61,5 +64,15 @@ struct Rendered {
 /// Errors: InputError of camera, models and casters, of a size that the camera cannot have, and
 /// when no object is in the scene.
 Rendered render_scene(const SceneFile& file, const RenderOptions& options);
+
+/// What is kept from frame to frame.
+struct RenderMemory {
+  pipeline::TopologyCache topologies;
+  pipeline::MapMemory maps;
+};
+
+/// The same with these models, in the order of file.objects, in place of those that it names.
+Rendered render_scene(const SceneFile& file, const std::vector<ObjectModels>& models,
+                      const RenderOptions& options, RenderMemory& memory);
 
 }  // namespace gnomon::ar

@@ -84,7 +84,7 @@ class SceneReader {
     if (table == nullptr) return;
     const TomlTable t(scene_.file, *table, "[camera]",
                       {"file", "width", "height", "fov_y_deg", "near_m", "far_m",
-                       "world_from_camera", "axes", "eye_m", "target_m", "up"});
+                       "world_from_camera", "axes", "eye_m", "target_m", "up", "samples"});
     for (const char* key : {"fov_y_deg", "width", "height"})
       if (t.has("file") && t.has(key)) t.fail(key, "together with file, which says it");
     if (t.has("fov_y_deg") || !t.has("file"))
@@ -96,6 +96,7 @@ class SceneReader {
     if (scene_.far_m <= scene_.near_m)
       t.fail(t.has("far_m") ? "far_m" : "near_m",
              fmt::format("far_m {} is not beyond near_m {}", scene_.far_m, scene_.near_m));
+    scene_.samples = t.integer("samples", 1, 8).value_or(0);
     read_camera_pose(t);
   }
 

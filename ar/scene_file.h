@@ -41,6 +41,7 @@ struct SceneCaster {
   std::string light;
   pipeline::ShadowMethod method = pipeline::ShadowMethod::volumes;
   pipeline::MapSettings map;
+  bool operator==(const SceneCaster&) const = default;
 };
 
 struct SceneObject {
@@ -106,6 +107,8 @@ struct SceneFile {
   double near_m = 0.02, far_m = 100.0;
   /// A fixed camera in OpenCV's axes (x right, y down, z forward), used instead of tags.
   std::optional<glm::dmat4> world_from_camera;
+  /// As AugmentOptions::samples.
+  int samples = 0;
 
   /// Families to look for: those named, or else those that the tags use.
   std::vector<std::string> families;

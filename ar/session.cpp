@@ -2,72 +2,18 @@
 
 #include <algorithm>
 #include <chrono>
-#include <variant>
 
 #include "ar/camera.h"
 #include "ar/error.h"
 #include "ar/lit_scene_file.h"
 #include "ar/response.h"
 #include "ar/scene_nodes.h"
-#include "ar/shadow_settings.h"
+#include "ar/session_options.h"
 #include "ar/tag_layout_file.h"
 
 namespace gnomon::ar {
 
 namespace {
-
-AugmentOptions augment_options(const SceneFile& file, const SessionOptions& options) {
-  AugmentOptions out;
-  out.method = options.method.value_or(volume_method(file.shadow.method));
-  out.extrusion = extrusion(file.shadow.volume);
-  out.double_shadows = options.double_shadows || file.shadow.double_shadows;
-  out.samples = options.samples;
-  out.threads = options.threads;
-  out.near_m = file.near_m;
-  out.far_m = file.far_m;
-  out.masks = options.masks;
-  out.steps = options.steps;
-  out.frame = options.frame;
-  return out;
-}
-
-/// Absent: shadow volumes.
-std::optional<DifferentialFile> differential_file(const SceneFile& file,
-                                                  const SessionOptions& options) {
-  if (options.method || !(options.differential || file.differential)) return std::nullopt;
-  DifferentialFile out = file.differential.value_or(DifferentialFile{});
-  if (!options.lit_scene.empty()) out.lit_scene = options.lit_scene;
-  if (out.lit_scene.empty())
-    throw InputError(file.file.string() +
-                     ": [differential].lit_scene: missing, and no --lit-scene was given");
-  DifferentialSettings& settings = out.settings;
-  if (options.passes) {
-    settings.method.take.passes = *options.passes;
-    settings.budget_ms = 0.0;
-  }
-  if (options.budget_ms) settings.budget_ms = *options.budget_ms;
-  settings.samples = options.samples;
-  settings.threads = options.threads;
-  settings.near_m = file.near_m;
-  settings.far_m = file.far_m;
-  settings.masks = options.masks;
-  settings.steps = options.steps;
-  settings.frame = options.frame;
-  return out;
-}
-
-CameraModel camera_of(const SceneFile& file, int width, int height) {
-  require_photograph(file);
-  try {
-    if (file.pinhole) return camera_for_picture(*file.pinhole, width, height);
-    return camera_for_picture(read_camera(file.camera_file), width, height);
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    const std::string name = (file.pinhole ? file.file : file.camera_file).string();
-    if (what.starts_with(name)) throw;
-    throw InputError(name + ": " + what);
-  }
-}
 
 TrackerOptions tracker_options(const SceneFile& file, const SessionOptions& options) {
   TrackerOptions out;
@@ -100,7 +46,7 @@ struct Session::Impl {
   Impl(const SceneFile& scene_file, int width, int height, const SessionOptions& options)
       : file(scene_file),
         layout(scene_file.tags),
-        lens(camera_of(scene_file, width, height)),
+        lens(photograph_camera(scene_file, width, height)),
         augmenter(lens, augment_options(scene_file, options)),
         differential_settings(differential_file(scene_file, options)),
         still(options.still) {

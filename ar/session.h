@@ -32,7 +32,7 @@ struct SessionOptions {
   /// The one picture of a camera that does not move.
   bool still = false;
   bool double_shadows = false;
-  /// As in AugmentOptions.
+  /// As in AugmentOptions; samples 0 is the scene file's.
   int samples = 0, threads = 0;
   bool masks = true, steps = false, frame = false;
   /// Poses as measured, whatever the scene file says.

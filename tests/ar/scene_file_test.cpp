@@ -269,6 +269,10 @@ TEST(SceneFile, MistakesAreNamedByLineTableKeyAndValue) {
       {"[camera]\nfile = \"camera.yml\"\n", "", "camera: missing"},
       {"file = \"camera.yml\"", "file = \"camera.yml\"\nnear_m = 5\nfar_m = 1",
        "scene.toml:5: [camera].far_m: far_m 1 is not beyond near_m 5"},
+      {"file = \"camera.yml\"", "file = \"camera.yml\"\nsamples = 9",
+       "scene.toml:4: [camera].samples: 9 is not within 1 to 8"},
+      {"file = \"camera.yml\"", "file = \"camera.yml\"\nsamples = 1.5",
+       "scene.toml:4: [camera].samples: 1.5 is not an integer"},
       {"name = \"box\"", "name = \"world\"", "[body 'world'].name: 'world' is not a body"},
       {"[[light]]", "[light]", "light: a table is not a list of tables: write [[light]]"},
       {"id = 3", "id = ", "scene.toml:6: "},
@@ -278,6 +282,15 @@ TEST(SceneFile, MistakesAreNamedByLineTableKeyAndValue) {
     EXPECT_THAT(message, HasSubstr(wrong.message)) << wrong.to;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
+}
+
+TEST(SceneFile, SaysHowManyPixelsAreDrawnForOne) {
+  const SceneFolder folder;
+  EXPECT_EQ(folder.read(kSmall).samples, 0);
+  EXPECT_EQ(
+      folder.read(replaced(kSmall, "file = \"camera.yml\"", "file = \"camera.yml\"\nsamples = 3"))
+          .samples,
+      3);
 }
 
 /// Two groups, a spot on one, and two casters.
