@@ -41,9 +41,13 @@ void run(ArArguments& arguments) {
   arguments.session.still = !arguments.image.empty();
   arguments.session.steps = arguments.steps;
   arguments.session.frame = !arguments.save_frame.empty();
+  const bool in_parts = arguments.merge || arguments.shard != "1/1";
+  if (in_parts && arguments.video.empty())
+    throw ar::InputError("ar: --shard and --merge go with --video");
   if (!arguments.image.empty()) return run_still(arguments);
   if (arguments.steps) throw ar::InputError("ar: --steps goes with --image");
   if (!arguments.save_frame.empty()) throw ar::InputError("ar: --save-frame goes with --image");
+  if (arguments.merge) return run_video_merge(arguments);
   run_video(arguments);
 }
 
@@ -102,13 +106,18 @@ void add_ar(CLI::App& program) {
       ->add_option("--frames", arguments->frames,
                    "Stop a video or camera after so many frames (0: at its end)")
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--shard", arguments->shard,
+                      "Draw part I of N of a video's frames (I/N), for a scheduler; then --merge");
+  command->add_flag("--merge", arguments->merge,
+                    "Make the video of the parts that lie in the folder");
   command->footer(
       "Writes composite.png, shadow_mask.png, shadow_on_virtual.png, object_mask.png and\n"
-      "stencil_counts.png; for a video composite.avi.\n"
+      "stencil_counts.png; for a video composite.avi (a part: frames/ and video-I-of-N.json).\n"
       "Examples:\n"
       "  gnomon ar examples/desk/01_torus_on_house.toml --image examples/desk/background.png --out "
       "out --steps\n"
       "  gnomon ar scene.toml --video clip.avi --out out --method zfail --json\n"
+      "  gnomon ar scene.toml --video clip.avi --out out --shard 2/8   # then --merge\n"
       "  gnomon ar examples/soft/suzanne.toml --image examples/soft/background.png --out out "
       "--method differential --passes 100");
   command->callback([arguments] { run(*arguments); });

@@ -8,6 +8,9 @@
 #include "apps/ar_json.h"
 #include "apps/output_folder.h"
 #include "apps/progress.h"
+#include "apps/study/shard.h"
+#include "apps/video_frames.h"
+#include "ar/error.h"
 #include "ar/video.h"
 
 namespace gnomon::apps {
@@ -44,25 +47,34 @@ void run_video(const ArArguments& arguments) {
                                                  : ar::VideoReader::open_file(arguments.video);
   ar::SessionOptions options = arguments.session;
   options.masks = false;
+  const study::Shard shard = study::parse_shard("--shard", arguments.shard);
+  const bool has_budget =
+      options.budget_ms.value_or(scene.differential ? scene.differential->settings.budget_ms
+                                                    : 0.0) > 0.0;
+  if (!shard.is_whole() && has_budget && !options.passes)
+    throw ar::InputError("--shard: not with a budget of time, whose frames depend on those before");
   ar::Session session(scene, reader.width(), reader.height(), options);
   for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
   const fs::path target = arguments.out / "composite.avi";
   check_folder(arguments.out);
   refuse_to_replace(arguments.video, target);
-  make_folder(arguments.out);
-  ar::VideoWriter writer(target, reader.width(), reader.height(), reader.frames_per_second());
+  VideoFrames frames(arguments.out, reader, shard);
 
   VideoSummary summary;
+  std::size_t number = 0;
   {
     std::optional<std::int64_t> total = reader.promised_frames();
     if (arguments.frames > 0)
       total = std::min<std::int64_t>(total.value_or(arguments.frames), arguments.frames);
     const Progress progress("frame", total);
-    while (arguments.frames == 0 || summary.frames < arguments.frames) {
+    for (; arguments.frames == 0 || number < static_cast<std::size_t>(arguments.frames); ++number) {
       const std::optional<ar::VideoFrame> frame = reader.next();
       if (!frame) break;
-      const ar::SessionResult result = session.process(frame->image, frame->time_s);
-      writer.write(result.augmented ? result.augmented->composite : frame->image);
+      const bool draw = frames.wants(number);
+      const ar::SessionResult result = session.process(frame->image, frame->time_s, draw);
+      progress.show(static_cast<std::int64_t>(number) + 1);
+      if (!draw) continue;
+      frames.write(number, result.augmented ? result.augmented->composite : frame->image);
       summary.add(result);
       if (arguments.as_json) {
         json line = {{"frame", frame->index},
@@ -75,12 +87,11 @@ void run_video(const ArArguments& arguments) {
         if (result.differential) line["differential"] = differential_json(*result.differential);
         std::cout << line.dump() << '\n';
       }
-      progress.show(summary.frames);
     }
   }
-  writer.close();
+  const fs::path written = frames.finish(number);
   summary.missing = reader.missing_frames();
-  const double frames = static_cast<double>(std::max<std::int64_t>(summary.frames, 1));
+  const double count = static_cast<double>(std::max<std::int64_t>(summary.frames, 1));
   const double drawn = static_cast<double>(std::max<std::int64_t>(summary.augmented, 1));
   if (arguments.as_json) {
     std::cout << json{{"frames", summary.frames},
@@ -89,7 +100,7 @@ void run_video(const ArArguments& arguments) {
                       {"held", summary.held},
                       {"missing", summary.missing},
                       {"ms_a_frame",
-                       {{"track", summary.track_ms / frames}, {"draw", summary.draw_ms / drawn}}}}
+                       {{"track", summary.track_ms / count}, {"draw", summary.draw_ms / drawn}}}}
                      .dump()
               << '\n';
     return;
@@ -98,11 +109,24 @@ void run_video(const ArArguments& arguments) {
       "{} frames: {} augmented ({} with a held pose), {} without a pose kept as they "
       "are; {:.1f} ms tracking and {:.1f} ms drawing a frame\n",
       summary.frames, summary.augmented, summary.held, summary.without_pose,
-      summary.track_ms / frames, summary.draw_ms / drawn);
+      summary.track_ms / count, summary.draw_ms / drawn);
   if (summary.missing > 0)
     std::cout << fmt::format("the video ends early: its header promises {} frames more\n",
                              summary.missing);
-  std::cout << "wrote " << target.string() << '\n';
+  std::cout << "wrote " << written.string() << '\n';
+}
+
+void run_video_merge(const ArArguments& arguments) {
+  check_folder(arguments.out);
+  refuse_to_replace(arguments.video, arguments.out / "composite.avi");
+  std::size_t frames = 0;
+  {
+    const Progress progress("frame", std::nullopt);
+    frames = merge_video(arguments.out,
+                         [&](std::size_t done) { progress.show(static_cast<std::int64_t>(done)); });
+  }
+  std::cout << fmt::format("{} frames; wrote {}\n", frames,
+                           (arguments.out / "composite.avi").string());
 }
 
 }  // namespace gnomon::apps

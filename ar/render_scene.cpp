@@ -57,11 +57,11 @@ Ball ball_about(const pipeline::Scene& scene) {
   return {0.5 * (low + high), radius > 0.0 ? radius : 1.0};
 }
 
-CameraModel camera_model(const SceneFile& file, const RenderOptions& options) {
+CameraModel camera_model(const SceneFile& file, int given_width, int given_height) {
   if (!file.camera_file.empty()) {
     CameraModel camera = read_camera(file.camera_file);
-    const int width = options.width > 0 ? options.width : camera.width;
-    const int height = options.height > 0 ? options.height : camera.height;
+    const int width = given_width > 0 ? given_width : camera.width;
+    const int height = given_height > 0 ? given_height : camera.height;
     if (width == 0)
       throw InputError(fmt::format("{}: the camera has no picture size: give --size",
                                    one_line(file.camera_file.string())));
@@ -69,8 +69,8 @@ CameraModel camera_model(const SceneFile& file, const RenderOptions& options) {
   }
   const CameraModel given =
       file.pinhole.value_or(pinhole_camera(640, 480, focal_for(480, glm::radians(kFovDeg))));
-  const int width = options.width > 0 ? options.width : given.width;
-  const int height = options.height > 0 ? options.height : given.height;
+  const int width = given_width > 0 ? given_width : given.width;
+  const int height = given_height > 0 ? given_height : given.height;
   return pinhole_camera(width, height, given.fy * height / given.height);
 }
 
@@ -196,15 +196,10 @@ namespace {
 Rendered render(const SceneFile& file, const std::vector<ObjectModels>& models,
                 const RenderOptions& options, RenderMemory& memory) {
   Rendered out;
-  const SceneNodes nodes(file, models);
-  out.left_out = nodes.left_out();
-  const pipeline::Scene scene = nodes.scene();
-  if (scene.objects.empty())
-    throw InputError(fmt::format("{}: every object hangs on a body, which only tags can place",
-                                 one_line(file.file.string())));
-  const CameraModel model = camera_model(file, options);
-  const PinholeView view(Lens(model), 1);
-  const pipeline::Camera camera = camera_for(file, view, model, scene);
+  PlacedScene placed = place_scene(file, models, options.width, options.height);
+  out.left_out = std::move(placed.left_out);
+  const pipeline::Scene& scene = placed.scene;
+  const pipeline::Camera& camera = placed.camera;
   out.objects = scene.objects.size();
   out.lights = scene.lights.size();
   for (const pipeline::Object& object : scene.objects)
@@ -248,6 +243,18 @@ Rendered render(const SceneFile& file, const std::vector<ObjectModels>& models,
 }
 
 }  // namespace
+
+PlacedScene place_scene(const SceneFile& file, const std::vector<ObjectModels>& models, int width,
+                        int height) {
+  const SceneNodes nodes(file, models);
+  PlacedScene out{.scene = nodes.scene(), .left_out = nodes.left_out()};
+  if (out.scene.objects.empty())
+    throw InputError(fmt::format("{}: every object hangs on a body, which only tags can place",
+                                 one_line(file.file.string())));
+  const CameraModel model = camera_model(file, width, height);
+  out.camera = camera_for(file, PinholeView(Lens(model), 1), model, out.scene);
+  return out;
+}
 
 Rendered render_scene(const SceneFile& file, const std::vector<ObjectModels>& models,
                       const RenderOptions& options, RenderMemory& memory) {

@@ -65,6 +65,18 @@ struct Rendered {
 /// when no object is in the scene.
 Rendered render_scene(const SceneFile& file, const RenderOptions& options);
 
+/// What render_scene draws: the objects at their places, and the camera.
+struct PlacedScene {
+  pipeline::Scene scene;
+  pipeline::Camera camera;
+  std::vector<std::string> left_out;
+};
+
+/// Width and height as in RenderOptions; models in the order of file.objects. Errors: as
+/// render_scene.
+PlacedScene place_scene(const SceneFile& file, const std::vector<ObjectModels>& models, int width,
+                        int height);
+
 /// What is kept from frame to frame.
 struct RenderMemory {
   pipeline::TopologyCache topologies;

@@ -125,7 +125,7 @@ Session::Session(const SceneFile& file, int width, int height, const SessionOpti
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 
-SessionResult Session::process(const Image& picture, double time_s) {
+SessionResult Session::process(const Image& picture, double time_s, bool draw) {
   SessionResult result;
   const auto start = std::chrono::steady_clock::now();
   if (impl_->tracker) result.track = impl_->tracker->update(picture, time_s);
@@ -138,7 +138,7 @@ SessionResult Session::process(const Image& picture, double time_s) {
   const bool placed = std::any_of(
       result.scene.objects.begin(), result.scene.objects.end(),
       [](const pipeline::Object& o) { return o.role == pipeline::Role::virtual_object; });
-  if (placed) impl_->augment(picture, result);
+  if (placed && draw) impl_->augment(picture, result);
   return result;
 }
 

@@ -62,8 +62,9 @@ class Session {
   ~Session();
   Session(Session&&) noexcept;
 
-  /// Times are seconds and grow. Precondition: three channels, the session's size.
-  SessionResult process(const Image& picture, double time_s);
+  /// Times are seconds and grow. Without `draw` the picture is only tracked, which the filter of
+  /// later pictures needs. Precondition: three channels, the session's size.
+  SessionResult process(const Image& picture, double time_s, bool draw = true);
 
   /// What the model reader left out, one sentence each.
   const std::vector<std::string>& notes() const;

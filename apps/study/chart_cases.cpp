@@ -9,6 +9,8 @@
 #include "apps/study/study_file.h"
 #include "ar/error.h"
 #include "ar/pinhole_view.h"
+#include "ar/render_scene.h"
+#include "ar/scene_models.h"
 
 namespace gnomon::apps::study {
 
@@ -27,6 +29,37 @@ View pinhole_view(const StudyPhotograph& photograph, int threads) {
           view.camera(at.world_from_camera, at.file.near_m, at.file.far_m)};
 }
 
+/// What the scene file's camera sees of one of its lights.
+View rendered_view(const ar::SceneFile& file, std::size_t light) {
+  ar::PlacedScene placed = ar::place_scene(file, ar::load_models(file), 0, 0);
+  pipeline::Light& chosen = placed.scene.lights.at(light);
+  chosen.samples = 1;
+  placed.scene.lights = {chosen};
+  return {"", std::move(placed.scene), placed.camera};
+}
+
+void add_scene(const std::filesystem::path& path, int threads,
+               std::vector<std::unique_ptr<ChartCase>>& cases) {
+  const ar::SceneFile file = ar::read_scene(path);
+  if (file.lights.empty()) throw ar::InputError(path.string() + ": no [[light]] to chart");
+  for (std::size_t i = 0; i < file.lights.size(); ++i)
+    cases.push_back(std::make_unique<RayCase>(
+        path.stem().string() + ", " + file.lights[i].name,
+        [file, i] { return rendered_view(file, i); }, threads));
+}
+
+void add_photograph(const StudyPhotograph& photograph, CapturedRooms& rooms, int threads,
+                    std::vector<std::unique_ptr<ChartCase>>& cases) {
+  if (!photograph.capture.empty()) {
+    cases.push_back(std::make_unique<RoomCase>(photograph, rooms, threads));
+    return;
+  }
+  cases.push_back(std::make_unique<PhotographCase>(photograph, threads));
+  cases.push_back(std::make_unique<RayCase>(
+      photograph.name + ", light's shadow",
+      [photograph, threads] { return pinhole_view(photograph, threads); }, threads));
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<ChartCase>> chart_cases(const std::vector<std::filesystem::path>& files,
@@ -34,17 +67,14 @@ std::vector<std::unique_ptr<ChartCase>> chart_cases(const std::vector<std::files
                                                     int threads) {
   std::vector<std::unique_ptr<ChartCase>> cases;
   for (const std::filesystem::path& file : files) {
-    const Study study = read_study(file);
-    for (const StudyPhotograph& photograph : study.photographs) {
-      if (!photograph.capture.empty()) {
-        cases.push_back(std::make_unique<RoomCase>(photograph, rooms, threads));
-        continue;
-      }
-      cases.push_back(std::make_unique<PhotographCase>(photograph, threads));
-      cases.push_back(std::make_unique<RayCase>(
-          photograph.name + ", light's shadow",
-          [photograph, threads] { return pinhole_view(photograph, threads); }, threads));
+    if (!is_study(file)) {
+      add_scene(file, threads, cases);
+      continue;
     }
+    const Study study = read_study(file);
+    for (const StudyPhotograph& photograph : study.photographs)
+      add_photograph(photograph, rooms, threads, cases);
+    for (const std::filesystem::path& scene : study.scenes) add_scene(scene, threads, cases);
   }
   if (!generated) return cases;
   for (View& view : generated_views(kWidth, kHeight)) {

@@ -154,4 +154,38 @@ TEST_F(Ar, AVideoFrameWithoutTagsKeepsItsPhotographAndIsCounted) {
   for (const std::uint8_t value : middle->image.pixels) ASSERT_NEAR(value, 90, 2);
 }
 
+// Oracle: the whole run.
+TEST_F(Ar, AVideoDrawnInPartsIsTheWholeOneToTheByte) {
+  const ar::Image photo = ar::read_image_rgb(kPhoto);
+  {
+    ar::VideoWriter writer(file("in.avi"), photo.width, photo.height, 12.0);
+    for (int i = 0; i < 5; ++i) {
+      // A picture's brightness changes a little, so that each is its own and poses are filtered.
+      ar::Image picture = photo;
+      for (std::uint8_t& value : picture.pixels)
+        value = static_cast<std::uint8_t>(value - value * i / 20);
+      writer.write(picture);
+    }
+    writer.close();
+  }
+  const auto drawn = [&](const std::string& out, const std::string& more) {
+    std::vector<std::string> arguments{"ar",    kScene,    "--video",   file("in.avi"),
+                                       "--out", file(out), "--samples", "1"};
+    if (more == "--merge")
+      arguments.push_back(more);
+    else
+      arguments.insert(arguments.end(), {"--shard", more});
+    return run(arguments);
+  };
+  ASSERT_EQ(drawn("whole", "1/1").status, 0);
+  expect_one_line_error(drawn("parts", "--merge"), "parts");
+  ASSERT_EQ(drawn("parts", "2/2").status, 0);
+  expect_one_line_error(drawn("parts", "--merge"), "part 1 of 2 is missing");
+  ASSERT_EQ(drawn("parts", "1/2").status, 0);
+  const Outcome merged = drawn("parts", "--merge");
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  EXPECT_EQ(text_of(file("whole/composite.avi")), text_of(file("parts/composite.avi")));
+  EXPECT_GT(fs::file_size(file("whole/composite.avi")), 10'000u);
+}
+
 }  // namespace gnomon
