@@ -2,12 +2,14 @@
 
 #include "apps/study/camera_sweeps.h"
 #include "apps/study/light_sweeps.h"
+#include "apps/study/mesh_sweeps.h"
 
 namespace gnomon::apps::study {
 
 Sweeps all_sweeps(int threads) {
   Sweeps sweeps;
-  for (void (*add)(Sweeps&, int) : {add_camera_sweeps, add_light_sweeps}) add(sweeps, threads);
+  for (void (*add)(Sweeps&, int) : {add_camera_sweeps, add_light_sweeps, add_mesh_sweeps})
+    add(sweeps, threads);
   return sweeps;
 }
 
