@@ -1,6 +1,7 @@
 #include "apps/study/all_sweeps.h"
 
 #include "apps/study/camera_sweeps.h"
+#include "apps/study/count_sweeps.h"
 #include "apps/study/light_sweeps.h"
 #include "apps/study/mesh_sweeps.h"
 
@@ -8,7 +9,8 @@ namespace gnomon::apps::study {
 
 Sweeps all_sweeps(int threads) {
   Sweeps sweeps;
-  for (void (*add)(Sweeps&, int) : {add_camera_sweeps, add_light_sweeps, add_mesh_sweeps})
+  for (void (*add)(Sweeps&, int) :
+       {add_camera_sweeps, add_light_sweeps, add_mesh_sweeps, add_count_sweeps})
     add(sweeps, threads);
   return sweeps;
 }
