@@ -2,6 +2,7 @@
 
 #include "apps/study/camera_sweeps.h"
 #include "apps/study/count_sweeps.h"
+#include "apps/study/depth_sweeps.h"
 #include "apps/study/light_sweeps.h"
 #include "apps/study/mesh_sweeps.h"
 
@@ -10,7 +11,7 @@ namespace gnomon::apps::study {
 Sweeps all_sweeps(int threads) {
   Sweeps sweeps;
   for (void (*add)(Sweeps&, int) :
-       {add_camera_sweeps, add_light_sweeps, add_mesh_sweeps, add_count_sweeps})
+       {add_camera_sweeps, add_light_sweeps, add_mesh_sweeps, add_count_sweeps, add_depth_sweeps})
     add(sweeps, threads);
   return sweeps;
 }
