@@ -11,7 +11,7 @@
 #include "apps/commands.h"
 #include "apps/output_folder.h"
 #include "apps/progress.h"
-#include "apps/study/camera_sweeps.h"
+#include "apps/study/all_sweeps.h"
 #include "apps/study/stability.h"
 #include "ar/error.h"
 
@@ -29,14 +29,8 @@ struct Options {
   int threads = 0;
 };
 
-study::Sweeps all_sweeps(const Options& options) {
-  study::Sweeps sweeps;
-  study::add_camera_sweeps(sweeps, options.threads);
-  return sweeps;
-}
-
 study::Sweeps chosen_sweeps(const Options& options) {
-  study::Sweeps all = all_sweeps(options);
+  study::Sweeps all = study::all_sweeps(options.threads);
   if (options.only.empty()) return all;
   for (const std::string& name : options.only)
     if (std::ranges::none_of(all, [&](const auto& s) { return s->text().name == name; }))

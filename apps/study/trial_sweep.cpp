@@ -1,5 +1,7 @@
 #include "apps/study/trial_sweep.h"
 
+#include <stdexcept>
+
 namespace gnomon::apps::study {
 
 std::vector<std::string> TrialSweep::methods() const {
@@ -8,13 +10,27 @@ std::vector<std::string> TrialSweep::methods() const {
   return names;
 }
 
+namespace {
+
+/// What its contract refuses, a method gets wrong as a whole.
+Outcome measured(ShadowTrial& trial, const ShadowSetting& setting) {
+  const auto tested = static_cast<double>(trial.tested());
+  try {
+    const ShadowShot shot = trial.measure(setting);
+    return {shot.wrong, tested, shot.not_finite};
+  } catch (const std::invalid_argument&) {
+    return {tested, tested, 0};
+  }
+}
+
+}  // namespace
+
 std::vector<Outcome> TrialSweep::run(std::size_t value, std::size_t input) {
   ShadowTrial trial(plan_.view(value, input), threads_);
   std::vector<Outcome> outcomes;
   for (ShadowSetting setting : plan_.settings) {
     if (plan_.adapt) plan_.adapt(value, setting);
-    const ShadowShot shot = trial.measure(setting);
-    outcomes.push_back({shot.wrong, static_cast<double>(shot.tested), shot.not_finite});
+    outcomes.push_back(measured(trial, setting));
   }
   return outcomes;
 }

@@ -1,4 +1,5 @@
-// A sweep whose inputs are views of a light's shadow, held against rays.
+// A sweep whose inputs are views of a light's shadow, held against rays. Where a method's contract
+// refuses an input (std::invalid_argument), all its pixels count as wrong.
 #pragma once
 
 #include <functional>
