@@ -12,6 +12,7 @@
 #include "apps/output_folder.h"
 #include "apps/progress.h"
 #include "apps/study/camera_sweeps.h"
+#include "apps/study/photograph_sweeps.h"
 #include "apps/study/stability.h"
 #include "ar/error.h"
 
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  fs::path out;
+  fs::path out, examples = GNOMON_SOURCE_DIR "/examples";
   std::vector<std::string> only;
   std::string shard = "1/1";
   bool merge = false, list = false;
@@ -32,6 +33,13 @@ struct Options {
 study::Sweeps all_sweeps(const Options& options) {
   study::Sweeps sweeps;
   study::add_camera_sweeps(sweeps, options.threads);
+  if (study::has_photographs(options.examples))
+    study::add_photograph_sweeps(sweeps, options.examples, options.threads);
+  else
+    std::cerr << fmt::format(
+        "gnomon: note: --examples {}: no desk/ and soft/ with photographs, so "
+        "sweeps that need them are left out\n",
+        options.examples.string());
   return sweeps;
 }
 
@@ -92,6 +100,8 @@ void add_stability(CLI::App& program) {
       "stability", "Sweep each way in which shadow methods fail, and map where they give up");
   command->add_option("--out", options->out, "Folder for the results");
   command->add_option("--only", options->only, "These sweeps alone (--list names them)");
+  command->add_option("--examples", options->examples,
+                      "Folder with desk/ and soft/, whose photographs some sweeps need");
   command->add_flag("--list", options->list, "Name the sweeps, and do nothing else");
   command->add_option("--shard", options->shard,
                       "Run part I of N of the jobs (I/N), for a scheduler; --merge when all ran");

@@ -184,7 +184,7 @@ Damage cover(const std::shared_ptr<Desk>& desk) {
        .title = "Tags partly covered",
        .explanation = kOnDesk + "every tag covered from one side on: its border and a "
                                 "share of its black square. One that is still read is taken for a "
-                                "narrower one.",
+                                "narrower or wider one.",
        .parameter = "percent of a tag",
        .values = shown(kCovered_percent)},
       [](DeskScene& scene, std::size_t value, std::size_t input) {
