@@ -11,7 +11,8 @@
 #include "apps/commands.h"
 #include "apps/output_folder.h"
 #include "apps/progress.h"
-#include "apps/study/all_sweeps.h"
+#include "apps/study/generated_sweeps.h"
+#include "apps/study/photograph_sweeps.h"
 #include "apps/study/stability.h"
 #include "ar/error.h"
 
@@ -22,15 +23,27 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  fs::path out;
+  fs::path out, examples = GNOMON_SOURCE_DIR "/examples";
   std::vector<std::string> only;
   std::string shard = "1/1";
   bool merge = false, list = false;
   int threads = 0;
 };
 
+study::Sweeps every_sweep(const Options& options) {
+  study::Sweeps sweeps = study::generated_sweeps(options.threads);
+  if (study::has_photographs(options.examples))
+    study::add_photograph_sweeps(sweeps, options.examples, options.threads);
+  else
+    std::cerr << fmt::format(
+        "gnomon: note: --examples {}: no desk/ and soft/ with photographs, so "
+        "sweeps that need them are left out\n",
+        options.examples.string());
+  return sweeps;
+}
+
 study::Sweeps chosen_sweeps(const Options& options) {
-  study::Sweeps all = study::all_sweeps(options.threads);
+  study::Sweeps all = every_sweep(options);
   if (options.only.empty()) return all;
   for (const std::string& name : options.only)
     if (std::ranges::none_of(all, [&](const auto& s) { return s->text().name == name; }))
@@ -86,6 +99,8 @@ void add_stability(CLI::App& program) {
       "stability", "Sweep each way in which shadow methods fail, and map where they give up");
   command->add_option("--out", options->out, "Folder for the results");
   command->add_option("--only", options->only, "These sweeps alone (--list names them)");
+  command->add_option("--examples", options->examples,
+                      "Folder with desk/ and soft/, whose photographs some sweeps need");
   command->add_flag("--list", options->list, "Name the sweeps, and do nothing else");
   command->add_option("--shard", options->shard,
                       "Run part I of N of the jobs (I/N), for a scheduler; --merge when all ran");

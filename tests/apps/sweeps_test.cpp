@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/study/all_sweeps.h"
+#include "apps/study/generated_sweeps.h"
 #include "apps/study/part_file.h"
 #include "apps/study/sweep_views.h"
 #include "apps/study/trial_sweep.h"
@@ -35,7 +35,7 @@ Sweep& named(const Sweeps& sweeps, const std::string& name) {
 class Shares {
  public:
   Shares(const std::string& sweep, const std::string& value, std::size_t input)
-      : sweeps_(all_sweeps(2)),
+      : sweeps_(generated_sweeps(2)),
         sweep_(named(sweeps_, sweep)),
         outcomes_(sweep_.run(place_of(sweep_.values(), value), input)) {}
   double of(const std::string& method) const {
@@ -53,7 +53,7 @@ constexpr double kEdges = 0.001;
 
 TEST(Sweeps, HaveUniquePlainNamesAndValues) {
   std::set<std::string> names;
-  for (const auto& sweep : all_sweeps(1)) {
+  for (const auto& sweep : generated_sweeps(1)) {
     const SweepText text = sweep->text();
     EXPECT_TRUE(is_plain_name(text.name)) << text.name;
     EXPECT_TRUE(names.insert(text.name).second) << text.name;
@@ -68,7 +68,7 @@ TEST(Sweeps, HaveUniquePlainNamesAndValues) {
 }
 
 TEST(Sweeps, LeaveFiniteBuffersAtTheirEnds) {
-  for (const auto& sweep : all_sweeps(2)) {
+  for (const auto& sweep : generated_sweeps(2)) {
     for (const std::size_t value : {std::size_t{0}, sweep->values().size() - 1}) {
       const std::vector<Outcome> outcomes = sweep->run(value, 0);
       ASSERT_THAT(outcomes, SizeIs(sweep->methods().size()));
@@ -81,13 +81,13 @@ TEST(Sweeps, LeaveFiniteBuffersAtTheirEnds) {
 }
 
 TEST(Sweeps, BeginHarmless) {
-  for (const auto& sweep : all_sweeps(2))
+  for (const auto& sweep : generated_sweeps(2))
     for (const Outcome& outcome : sweep->run(0, 1))
       EXPECT_LT(outcome.share(), kGivenUp) << sweep->text().name;
 }
 
 TEST(Sweeps, AreTheSameForOneThreadAndTwo) {
-  const Sweeps one = all_sweeps(1), two = all_sweeps(2);
+  const Sweeps one = generated_sweeps(1), two = generated_sweeps(2);
   for (const char* name : {"camera-in-volume", "mesh-torn", "overlaps", "map-size"}) {
     Sweep &a = named(one, name), &b = named(two, name);
     EXPECT_EQ(a.run(1, 1), b.run(1, 1)) << name;

@@ -1,4 +1,4 @@
-#include "apps/study/all_sweeps.h"
+#include "apps/study/generated_sweeps.h"
 
 #include "apps/study/camera_sweeps.h"
 #include "apps/study/count_sweeps.h"
@@ -10,7 +10,7 @@
 
 namespace gnomon::apps::study {
 
-Sweeps all_sweeps(int threads) {
+Sweeps generated_sweeps(int threads) {
   Sweeps sweeps;
   for (void (*add)(Sweeps&, int) :
        {add_camera_sweeps, add_light_sweeps, add_mesh_sweeps, add_count_sweeps, add_depth_sweeps,

@@ -6,6 +6,6 @@
 namespace gnomon::apps::study {
 
 /// Threads as in raster::ExecuteOptions.
-Sweeps all_sweeps(int threads);
+Sweeps generated_sweeps(int threads);
 
 }  // namespace gnomon::apps::study
