@@ -78,7 +78,9 @@ raster::DepthLookup record_shadow_map(raster::Frame& frame, std::span<const Plac
     if (!casters.contains(*object.object)) continue;
     // What of a closed body is turned from the light hides the same points, and never the lit side.
     // The map mirrors (LightView), so that side is the one that is in front here.
-    const bool averted = object.caster_topology->faults.closed_manifold();
+    // Of one that is turned inside out nobody can tell which it is.
+    const Topology& caster = *object.caster_topology;
+    const bool averted = caster.faults.closed_manifold() && caster.thickness >= 0.0;
     state.cull = averted ? raster::Cull::back : raster::Cull::none;
     state.polygon_offset =
         averted && is_thick(object, plan.light, plan.texel_m) ? plan.offset_of_thick : plan.offset;

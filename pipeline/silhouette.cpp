@@ -31,6 +31,21 @@ void mark_casting(const TrianglePlanes& planes, const glm::dvec4& light, int rev
   }
 }
 
+/// Does the point, the origin here, lie on a triangle? A lamp that does is as good as inside: no
+/// face is turned to it, and with all faces the volume is whole. Where it does so only by rounding,
+/// a closed mesh that casts with all faces casts the same shadow.
+bool on_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  constexpr double kRounding = 1e-9;
+  const glm::dvec3 normal = glm::cross(b - a, c - a);
+  const double twice_area = glm::length(normal);
+  const double size = glm::length(a) + glm::length(b) + glm::length(c);
+  if (!(twice_area > 0.0) || std::abs(glm::dot(normal, a)) > kRounding * twice_area * size)
+    return false;
+  const double least = -kRounding * twice_area * twice_area;
+  return glm::dot(normal, glm::cross(a, b)) >= least &&
+         glm::dot(normal, glm::cross(b, c)) >= least && glm::dot(normal, glm::cross(c, a)) >= least;
+}
+
 /// Is the point inside a closed mesh? Counts, with sign, where a line from it leaves. The line's
 /// direction has no simple ratio, so that it meets no edge of a mesh made by hand.
 bool encloses(const Topology& topology, const glm::dvec3& point) {
@@ -41,6 +56,7 @@ bool encloses(const Topology& topology, const glm::dvec3& point) {
       return glm::dvec3(topology.positions[topology.indices[3 * t + k]]) - point;
     };
     const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
+    if (on_triangle(a, b, c)) return true;
     // The line passes the triangle if it turns the same way about its three edges.
     const double ab = glm::dot(along, glm::cross(a, b)), bc = glm::dot(along, glm::cross(b, c));
     const double ca = glm::dot(along, glm::cross(c, a));

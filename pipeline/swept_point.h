@@ -33,7 +33,7 @@ inline auto swept_by(const glm::dvec4& light_model, double amount) {
   };
 }
 
-/// v goes radius_m metres of the world along its ray from a point.
+/// v goes radius_m metres of the world along its ray from a point; one where the light is stays.
 /// Precondition: a point. Errors: a radius that is not positive or not finite.
 inline auto swept_by_radius(const glm::dvec4& light_model, const glm::mat4& world_from_model,
                             double radius_m) {
@@ -41,7 +41,8 @@ inline auto swept_by_radius(const glm::dvec4& light_model, const glm::mat4& worl
   return [light = glm::dvec3(light_model), world = glm::dmat3(glm::dmat4{world_from_model}),
           radius_m](const glm::dvec3& v) {
     const double ray_m = glm::length(world * (v - light));
-    return glm::vec4(glm::dvec4(v + (v - light) * (radius_m / ray_m), 1.0));
+    const double stretch = ray_m > 0.0 ? radius_m / ray_m : 0.0;
+    return glm::vec4(glm::dvec4(v + (v - light) * stretch, 1.0));
   };
 }
 

@@ -117,7 +117,7 @@ double thickness_of(const Topology& topology) {
     area += 0.5 * glm::length(normal);
     volume += glm::dot(normal, corner - topology.low) / 6.0;
   }
-  return area > 0.0 ? 2.0 * std::abs(volume) / area : 0.0;
+  return area > 0.0 ? 2.0 * volume / area : 0.0;
 }
 
 void count_faults(Topology& topology) {

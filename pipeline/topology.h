@@ -81,7 +81,8 @@ struct Topology {
   std::vector<std::uint32_t> unpaired_edges;
   /// Bounds of all triangles; without one, low is above high.
   glm::dvec3 low{0.0}, high{-1.0};
-  /// Of a closed mesh: twice its volume by its area, which is what a plate is thick; else 0.
+  /// Of a closed mesh: twice its volume by its area, which is what a plate is thick, and negative
+  /// where the mesh is turned inside out; else 0.
   double thickness = 0.0;
 
   std::size_t triangle_count() const { return indices.size() / 3; }

@@ -147,6 +147,36 @@ TEST(ShadowMap, AThinClosedPlateDoesNotShadowItself) {
   EXPECT_GT(acne, 500u);
 }
 
+// A closed body whose triangles run the wrong way round shows the light's map the very side that is
+// lit. Oracle: the same body turned right, but for pixels at edges; without an offset there is
+// acne.
+TEST(ShadowMap, ABodyTurnedInsideOutDoesNotShadowItself) {
+  Mesh ball = test::icosphere_mesh(0.8f, 4);
+  for (std::size_t i = 0; i < ball.indices.size(); i += 3)
+    std::swap(ball.indices[i + 1], ball.indices[i + 2]);
+  Scene scene;
+  scene.objects.push_back({.name = "ball", .model = test::model_of(std::move(ball))});
+  scene.lights.push_back({.name = "lamp", .position = {3.0f, 2.5f, 2.0f, 1.0f}});
+  const Camera camera = test::look({2.0f, 1.5f, 2.0f}, glm::vec3(0.0f), kWidth, kHeight);
+  Picture lit, found, without;
+  draw(lit, with(scene, ShadowMethod::none), camera);
+  draw(found, with(scene, ShadowMethod::map, {.size = 256}), camera);
+  draw(without,
+       with(scene, ShadowMethod::map, {.size = 256, .offset = raster::PolygonOffset{0.0f, 2.0f}}),
+       camera);
+  std::size_t shown = 0, wrong = 0, acne = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      shown += lit.depth.at(x, y) != lit.depth.max_value();
+      wrong += found.color.at(x, y) != lit.color.at(x, y);
+      acne += without.color.at(x, y) != lit.color.at(x, y);
+    }
+  }
+  // Where light grazes the ball a texel is longer than its offset.
+  EXPECT_LT(wrong, shown / 100);
+  EXPECT_GT(acne, shown / 10);
+}
+
 // A closed room that is lit from within shows the very faces that its map holds, all of them turned
 // from the lamp by their winding: they need the slope's factor. Oracle: nothing is in it that
 // casts, so nothing is dark.

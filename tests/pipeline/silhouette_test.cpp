@@ -62,6 +62,22 @@ TEST(Silhouette, LightInsideAClosedMeshIsKeptInByAllOfIt) {
   EXPECT_TRUE(silhouette.edges.empty());
 }
 
+// A lamp in a face, an edge or a corner is turned to by no face, so without the others nothing
+// would cast. Oracle: the definition, with counts by hand.
+TEST(Silhouette, LightOnAClosedMeshCastsWithAllFacesThatItIsNotIn) {
+  const Topology cube = build_topology(*model_of(test::box_mesh(glm::vec3(1.0f))));
+  const auto reversed = [&](const glm::vec3& at) {
+    const auto casting = of(cube, glm::vec4(at, 1.0f)).casting;
+    return std::count(casting.begin(), casting.end(), std::int8_t{-1});
+  };
+  EXPECT_EQ(reversed({0.25f, 1.0f, -0.125f}), 10);
+  EXPECT_EQ(reversed({0.0f, 1.0f, 0.0f}), 10);
+  EXPECT_EQ(reversed({1.0f, 1.0f, 0.5f}), 8);
+  EXPECT_EQ(reversed({-1.0f, 1.0f, -1.0f}), 6);
+  // In the plane of a face and beside it: as ever.
+  EXPECT_EQ(reversed({0.0f, 1.0f, 1.5f}), 0);
+}
+
 // Oracle: the definition, with counts by hand.
 TEST(Silhouette, OpenSheetCastsFromBothSides) {
   const Topology sheet = build_topology(*model_of(test::square_mesh(1.0f)));

