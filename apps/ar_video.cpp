@@ -39,6 +39,16 @@ struct VideoSummary {
   }
 };
 
+/// What parts of one video agree on, beside the video itself.
+std::string asked_for(const ArArguments& arguments) {
+  const ar::SessionOptions& session = arguments.session;
+  return fmt::format("{} {} {} method '{}' passes {} samples {}{}{}", arguments.scene.string(),
+                     arguments.video.string(), session.lit_scene.string(), arguments.method,
+                     arguments.passes, session.samples,
+                     session.double_shadows ? " double shadows" : "",
+                     session.no_filter ? " no filter" : "");
+}
+
 }  // namespace
 
 void run_video(const ArArguments& arguments) {
@@ -48,17 +58,17 @@ void run_video(const ArArguments& arguments) {
   ar::SessionOptions options = arguments.session;
   options.masks = false;
   const study::Shard shard = study::parse_shard("--shard", arguments.shard);
-  const bool has_budget =
-      options.budget_ms.value_or(scene.differential ? scene.differential->settings.budget_ms
-                                                    : 0.0) > 0.0;
-  if (!shard.is_whole() && has_budget && !options.passes)
+  const bool differential = options.differential || (scene.differential && !options.method);
+  const double budget_ms =
+      options.budget_ms.value_or(scene.differential ? scene.differential->settings.budget_ms : 0.0);
+  if (!shard.is_whole() && differential && budget_ms > 0.0 && !options.passes)
     throw ar::InputError("--shard: not with a budget of time, whose frames depend on those before");
   ar::Session session(scene, reader.width(), reader.height(), options);
   for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
   const fs::path target = arguments.out / "composite.avi";
   check_folder(arguments.out);
   refuse_to_replace(arguments.video, target);
-  VideoFrames frames(arguments.out, reader, shard);
+  VideoFrames frames(arguments.out, reader, asked_for(arguments), shard);
 
   VideoSummary summary;
   std::size_t number = 0;

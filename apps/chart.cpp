@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -36,17 +37,18 @@ void say_written(const fs::path& out, const study::ChartPart& whole) {
 void chart(const Options& options) {
   const study::Shard shard = study::parse_shard("--shard", options.shard);
   check_folder(options.out);
-  study::require_gnuplot();
+  if (options.merge || shard.is_whole()) study::require_gnuplot();
   if (options.merge) return say_written(options.out, study::merge_chart(options.out));
   study::CapturedRooms rooms(options.threads);
-  const auto cases = study::chart_cases(options.studies, options.generated, rooms, options.threads);
+  study::ChartCases cases =
+      study::chart_cases(options.studies, options.generated, rooms, options.threads);
   study::ChartPart part;
   {
     const auto jobs = study::jobs_of(cases, shard);
     const Progress progress("scene", static_cast<std::int64_t>(jobs));
-    part = study::run_chart(cases, shard, options.frames, options.out, [&](std::size_t done) {
-      progress.show(static_cast<std::int64_t>(done));
-    });
+    part =
+        study::run_chart(std::move(cases), shard, options.frames, options.out,
+                         [&](std::size_t done) { progress.show(static_cast<std::int64_t>(done)); });
   }
   if (!shard.is_whole()) {
     std::cout << fmt::format("part {} of {}: {} points of {}\n", shard.number, shard.count,
@@ -70,8 +72,7 @@ void add_chart(CLI::App& program) {
                     "Leave out the scenes that the program makes itself");
   command->add_option("--out", options->out, "Folder for the results")->required();
   command
-      ->add_option("--frames", options->frames,
-                   "Frames a setting that are timed (0: errors only, the same on every machine)")
+      ->add_option("--frames", options->frames, "Frames a setting that are timed (0: errors only)")
       ->check(CLI::Range(0, 10'000))
       ->capture_default_str();
   command->add_option("--shard", options->shard,

@@ -40,8 +40,8 @@ constexpr const char* kPictures[] = {"before.png", "after.png", "difference.png"
 constexpr const char* kScene = "scene.toml";
 constexpr const char* kReports[] = {"report.json", "report.md"};
 
-/// A folder beside the one that is asked for, in which everything is made and checked first; gone
-/// with all it holds unless it took the other's place.
+/// A folder beside the one that is asked for, in which everything is made first; what it holds is
+/// moved file by file, and it goes with what is left.
 class Staging {
  public:
   explicit Staging(const fs::path& out) {
@@ -134,8 +134,15 @@ void write_pictures(ar::Fitter& fitter, const ar::FitResult& result, const fs::p
 }
 
 /// Reads what was written, draws it, and refuses what is outside the bound.
-double checked_error(ar::Fitter& fitter, const fs::path& scene, const ar::ErrorBound& bound) {
+double checked_error(ar::Fitter& fitter, const ar::FitResult& result, const fs::path& folder,
+                     const ar::ErrorBound& bound) {
+  // A copy whose paths lead from where it lies to what it names.
+  make_folder(folder);
+  ar::write_fit_scene(result.given, result.fitted, folder, folder);
+  const fs::path scene = folder / kScene;
   const double error = fitter.error_of(ar::load_fit_scene(ar::read_scene(scene)));
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
   if (!(error <= bound.value))
     throw ar::InputError(
         fmt::format("{}: as it is read again it has an error of {}, outside the bound",
@@ -166,8 +173,8 @@ void fit(const Options& options) {
   const ar::FitResult result = search(options, fitter, progress);
 
   const Staging staging(options.out);
+  const double written = checked_error(fitter, result, staging.folder() / "check", bound);
   ar::write_fit_scene(result.given, result.fitted, staging.folder(), options.out);
-  const double written = checked_error(fitter, staging.folder() / kScene, bound);
   write_pictures(fitter, result, staging.folder());
   const FitReport report{options.scene, options.images, bound, &result, written};
   const nlohmann::ordered_json json = fit_json(report);

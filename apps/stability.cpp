@@ -70,11 +70,11 @@ void say_written(const fs::path& out, const study::StabilityPart& whole) {
 
 void stability(const Options& options) {
   const study::Shard shard = study::parse_shard("--shard", options.shard);
-  const study::Sweeps sweeps = chosen_sweeps(options);
-  if (options.list) return list(sweeps);
+  if (options.list) return list(every_sweep(options));
   if (options.out.empty()) throw ar::InputError("--out: missing: where do the results go?");
   check_folder(options.out);
   if (options.merge) return say_written(options.out, study::merge_stability(options.out));
+  const study::Sweeps sweeps = chosen_sweeps(options);
   study::StabilityPart part;
   {
     const Progress progress("value", static_cast<std::int64_t>(study::jobs_of(sweeps, shard)));

@@ -35,13 +35,16 @@ struct VideoPart {
 VideoPart read_video_part(const fs::path& file) {
   VideoPart part;
   study::read_part(file, kVideoPartFormat, [&](const nlohmann::json& document) {
-    part.shape = {document.at("size").at(0).get<int>(), document.at("size").at(1).get<int>(),
-                  document.at("frames_per_second").get<double>(),
-                  document.at("frames").get<std::size_t>()};
-    part.done = document.at("done").get<std::vector<std::size_t>>();
-    const auto side = [](int pixels) { return pixels >= 1 && pixels <= ar::kMaxImageSide; };
+    const auto side = [&](std::size_t axis) {
+      return static_cast<int>(study::count_in(document.at("size").at(axis), ar::kMaxImageSide));
+    };
+    part.shape = {side(0), side(1), document.at("frames_per_second").get<double>(),
+                  study::count_in(document.at("frames"), study::kMostJobs),
+                  document.at("what").get<std::string>()};
+    part.done = study::jobs_in(document.at("done"), part.shape.frames,
+                               study::shard_in(document.at("shard")));
     const double rate = part.shape.frames_per_second;
-    if (!side(part.shape.width) || !side(part.shape.height) || !std::isfinite(rate) || !(rate > 0))
+    if (part.shape.width < 1 || part.shape.height < 1 || !std::isfinite(rate) || !(rate > 0))
       throw ar::InputError("size or frames_per_second: out of range");
   });
   return part;
@@ -49,16 +52,19 @@ VideoPart read_video_part(const fs::path& file) {
 
 }  // namespace
 
-VideoFrames::VideoFrames(const fs::path& out, const ar::VideoReader& reader,
+VideoFrames::VideoFrames(const fs::path& out, const ar::VideoReader& reader, std::string what,
                          const study::Shard& shard)
     : out_(out),
       shard_(shard),
-      shape_{reader.width(), reader.height(), reader.frames_per_second(), 0} {
+      shape_{reader.width(), reader.height(), reader.frames_per_second(), 0, std::move(what)} {
   make_folder(out);
   if (shard.is_whole())
     writer_.emplace(video_file(out), shape_.width, shape_.height, shape_.frames_per_second);
   else
     make_folder(out / "frames");
+  // What an earlier run left there speaks of other frames.
+  std::error_code ignored;
+  fs::remove(study::part_file(out, kParts, shard), ignored);
 }
 
 void VideoFrames::write(std::size_t frame, const ar::Image& picture) {
@@ -80,6 +86,7 @@ fs::path VideoFrames::finish(std::size_t frames) {
                            {"size", {shape_.width, shape_.height}},
                            {"frames_per_second", shape_.frames_per_second},
                            {"frames", frames},
+                           {"what", shape_.what},
                            {"done", done_}});
   return file;
 }

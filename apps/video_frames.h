@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/study/shard.h"
@@ -23,6 +24,8 @@ struct VideoShape {
   double frames_per_second = 0.0;
   /// Of the whole, whoever draws them.
   std::size_t frames = 0;
+  /// The scene and what else was asked for, in words.
+  std::string what;
   bool operator==(const VideoShape&) const = default;
 };
 
@@ -31,7 +34,7 @@ struct VideoShape {
 class VideoFrames {
  public:
   /// Throws ar::InputError.
-  VideoFrames(const std::filesystem::path& out, const ar::VideoReader& reader,
+  VideoFrames(const std::filesystem::path& out, const ar::VideoReader& reader, std::string what,
               const study::Shard& shard);
 
   /// Is the frame with that number, from 0, one that is to be drawn and written?

@@ -22,7 +22,8 @@ struct Offset {
   double distance = 0.0;
 };
 
-/// All within the radius, the nearest first.
+/// All within the radius, the nearest first. Lines between neighbours are looked at from one of
+/// their ends, so the radius is a pixel more than that of the distances looked for.
 std::vector<Offset> offsets_within(int radius) {
   std::vector<Offset> offsets;
   for (int y = -radius; y <= radius; ++y)
@@ -86,7 +87,10 @@ class TileRanges {
 class Finder {
  public:
   Finder(const Image& picture, const DisplacementOptions& options, std::span<const Offset> offsets)
-      : picture_(picture), options_(options), offsets_(offsets), ranges_(picture, options.radius) {}
+      : picture_(picture),
+        options_(options),
+        offsets_(offsets),
+        ranges_(picture, options.radius + 1) {}
 
   /// From (x, y) to the nearest place that has `value`; infinite beyond the radius.
   double distance(const std::uint8_t* value, int x, int y) const {
@@ -203,7 +207,7 @@ Displacement displacement(const Image& reference, const Image& test,
                       reference.channels == test.channels,
                   "a displacement is of pictures of one size");
   raster::require(options.radius >= 1 && options.radius <= 64, "radius is 1 to 64 pixels");
-  const std::vector<Offset> offsets = offsets_within(options.radius);
+  const std::vector<Offset> offsets = offsets_within(options.radius + 1);
   const Finder in_reference(reference, options, offsets), in_test(test, options, offsets);
   std::vector<Failing> failing;
   for (int y = 0; y < test.height; ++y) {

@@ -14,8 +14,9 @@
 namespace gnomon::pipeline {
 
 /// How often a caster hides a point from a light in one line, at most, where counts must not wrap
-/// (CountOptions::in_batches). One that does so more often, and 256 times in sum, may come out as
-/// not in shadow.
+/// (CountOptions::in_batches). Where some do so more often, a point may come out as not in shadow
+/// whose count is a multiple of what the bits of a batch can tell apart (128 of eight bits, 64 of
+/// seven; 256 and 128 where all volumes are one batch).
 inline constexpr std::size_t kLayers = 3;
 
 struct CountOptions {

@@ -1,6 +1,7 @@
 #include "apps/study/captured_room.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -58,6 +59,13 @@ void add_papers(Settings& out) {
   }
 }
 
+bool same_camera(const ar::CameraModel& a, const ar::CameraModel& b) {
+  const auto numbers = [](const ar::CameraModel& c) {
+    return std::tuple(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.lens, c.distortion);
+  };
+  return numbers(a) == numbers(b);
+}
+
 }  // namespace
 
 std::vector<DifferentialSetting> differential_settings() {
@@ -89,18 +97,22 @@ CapturedRoom::CapturedRoom(const std::filesystem::path& capture, int threads)
       threads_(threads) {}
 
 ar::DifferentialAugmenter& CapturedRoom::augmenter(const DifferentialSetting& setting,
-                                                   const ar::Lens& lens,
-                                                   const glm::dmat4& world_from_camera) {
+                                                   const PlacedPhotograph& photograph) {
+  const ar::SceneFile& file = photograph.file;
   const auto same = [&](const std::unique_ptr<Made>& made) {
-    return made->name == setting.name && made->world_from_camera == world_from_camera;
+    return made->name == setting.name && same_camera(made->camera, photograph.lens.camera()) &&
+           made->world_from_camera == photograph.world_from_camera && made->near_m == file.near_m &&
+           made->far_m == file.far_m;
   };
   const auto known = std::ranges::find_if(made_, same);
   if (known != made_.end()) return (*known)->augmenter;
   ar::DifferentialSettings settings = setting.settings;
   settings.threads = threads_;
-  made_.push_back(std::make_unique<Made>(
-      Made{setting.name, world_from_camera,
-           ar::DifferentialAugmenter(lens, light_, world_from_camera, settings)}));
+  settings.near_m = file.near_m;
+  settings.far_m = file.far_m;
+  made_.push_back(std::make_unique<Made>(Made{
+      setting.name, photograph.lens.camera(), photograph.world_from_camera, file.near_m, file.far_m,
+      ar::DifferentialAugmenter(photograph.lens, light_, photograph.world_from_camera, settings)}));
   return made_.back()->augmenter;
 }
 

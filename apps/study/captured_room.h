@@ -11,6 +11,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "apps/study/placed_photograph.h"
 #include "ar/camera.h"
 #include "ar/differential_augment.h"
 #include "pipeline/lit_scene.h"
@@ -33,16 +34,18 @@ class CapturedRoom {
 
   const std::shared_ptr<const pipeline::LitScene>& light() const { return light_; }
 
-  /// Made when it is first asked for. The camera stands still.
-  ar::DifferentialAugmenter& augmenter(const DifferentialSetting& setting, const ar::Lens& lens,
-                                       const glm::dmat4& world_from_camera);
+  /// Made when it is first asked for. The camera stands still at the photograph's place.
+  ar::DifferentialAugmenter& augmenter(const DifferentialSetting& setting,
+                                       const PlacedPhotograph& photograph);
 
  private:
   std::shared_ptr<const pipeline::LitScene> light_;
   int threads_;
   struct Made {
     std::string name;
+    ar::CameraModel camera;
     glm::dmat4 world_from_camera;
+    double near_m, far_m;
     ar::DifferentialAugmenter augmenter;
   };
   std::vector<std::unique_ptr<Made>> made_;

@@ -1,11 +1,16 @@
 #include "apps/study/chart.h"
 
+#include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <stdexcept>
+#include <system_error>
 
 #include "apps/output_folder.h"
 #include "apps/study/chart_page.h"
 #include "apps/study/chart_plot.h"
 #include "apps/study/part_file.h"
+#include "ar/error.h"
 #include "ar/file.h"
 #include "ar/image_file.h"
 
@@ -22,7 +27,7 @@ constexpr const char* kPictures = "pictures";
 constexpr double kShort_ms = 50.0, kCap_ms = 2000.0;
 
 void time_in_turns(const std::vector<std::unique_ptr<Contender>>& contenders, int frames,
-                   std::vector<Charted>& charted) {
+                   std::vector<ChartPoint>& points) {
   std::vector<std::vector<double>> times(contenders.size());
   for (int frame = 0; frame < frames; ++frame) {
     for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -31,45 +36,61 @@ void time_in_turns(const std::vector<std::unique_ptr<Contender>>& contenders, in
       times[i].push_back(contenders[i]->frame_ms());
     }
   }
-  for (std::size_t i = 0; i < times.size(); ++i) charted[i].point.times = times_of(times[i]);
+  for (std::size_t i = 0; i < times.size(); ++i) points[i].times = times_of(times[i]);
 }
 
 void run_job(ChartCase& one, std::size_t job, int frames, const fs::path& out, ChartPart& part) {
   const std::vector<std::unique_ptr<Contender>> contenders = one.contenders();
-  std::vector<Charted> charted;
-  for (const auto& contender : contenders) charted.push_back(contender->measure());
-  time_in_turns(contenders, frames, charted);
-  for (Charted& at : charted) {
-    ChartPoint& point = at.point;
+  std::vector<ChartPoint> points;
+  for (const auto& contender : contenders) {
+    Charted charted = contender->measure();
+    ChartPoint& point = charted.point;
     point.job = job;
-    const std::string name =
-        fmt::format("{:02}_{}", job, plain_name(point.scene + "_" + point.method));
+    const std::string name = fmt::format("{:02}_{:02}_{}", job, points.size(),
+                                         plain_name(point.scene + "_" + point.method));
     point.picture = name + ".png";
     point.difference = name + "_difference.png";
-    ar::write_png(out / kPictures / point.picture, at.picture);
-    ar::write_png(out / kPictures / point.difference, at.difference);
-    part.points.push_back(std::move(point));
+    ar::write_png(out / kPictures / point.picture, charted.picture);
+    ar::write_png(out / kPictures / point.difference, charted.difference);
+    points.push_back(std::move(point));
   }
+  time_in_turns(contenders, frames, points);
+  std::ranges::move(points, std::back_inserter(part.points));
   part.done.push_back(job);
+}
+
+/// What a case's scene does that methods refuse is the scene file's mistake.
+void run_named_job(ChartCase& one, std::size_t job, int frames, const fs::path& out,
+                   ChartPart& part) {
+  try {
+    run_job(one, job, frames, out, part);
+  } catch (const std::invalid_argument& misuse) {
+    throw ar::InputError(ar::one_line(one.name()) + ": " + misuse.what());
+  }
 }
 
 }  // namespace
 
-std::size_t jobs_of(const std::vector<std::unique_ptr<ChartCase>>& cases, const Shard& shard) {
+std::size_t jobs_of(const ChartCases& cases, const Shard& shard) {
   return cases.size() / shard.count + (cases.size() % shard.count >= shard.number ? 1 : 0);
 }
 
-ChartPart run_chart(const std::vector<std::unique_ptr<ChartCase>>& cases, const Shard& shard,
-                    int frames, const fs::path& out,
+ChartPart run_chart(ChartCases cases, const Shard& shard, int frames, const fs::path& out,
                     const std::function<void(std::size_t)>& progress) {
   make_folder(out / kPictures);
-  ChartPart part{.shard = shard, .jobs = cases.size()};
+  const fs::path file = part_file(out, kChartName, shard);
+  // What an earlier run left there speaks of other pictures.
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  ChartPart part{.shard = shard, .jobs = cases.size(), .frames = frames};
+  for (const auto& one : cases) part.scenes.push_back(one->name());
   for (std::size_t job = 0; job < cases.size(); ++job) {
     if (!shard.has(job)) continue;
-    run_job(*cases[job], job, frames, out, part);
+    run_named_job(*cases[job], job, frames, out, part);
+    cases[job].reset();
     progress(part.done.size());
   }
-  write_chart_part(part_file(out, kChartName, shard), part);
+  write_chart_part(file, part);
   return part;
 }
 

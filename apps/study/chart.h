@@ -15,14 +15,16 @@ namespace gnomon::apps::study {
 
 inline constexpr std::string_view kChartName = "chart";
 
-/// Runs the shard's jobs, writes their pictures to OUT/pictures and its part file to OUT.
-/// `progress` is told how many of its jobs are done. Throws ar::InputError.
-ChartPart run_chart(const std::vector<std::unique_ptr<ChartCase>>& cases, const Shard& shard,
-                    int frames, const std::filesystem::path& out,
+using ChartCases = std::vector<std::unique_ptr<ChartCase>>;
+
+/// Runs the shard's jobs, each case gone when it is done, writes their pictures to OUT/pictures and
+/// its part file to OUT. `progress` is told how many of its jobs are done. Throws ar::InputError.
+ChartPart run_chart(ChartCases cases, const Shard& shard, int frames,
+                    const std::filesystem::path& out,
                     const std::function<void(std::size_t)>& progress);
 
 /// Jobs of the shard.
-std::size_t jobs_of(const std::vector<std::unique_ptr<ChartCase>>& cases, const Shard& shard);
+std::size_t jobs_of(const ChartCases& cases, const Shard& shard);
 
 /// Writes OUT/chart.csv, chart.html and, where something was timed, chart.svg, of all jobs' points.
 /// Throws ar::InputError.

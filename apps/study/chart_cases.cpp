@@ -1,5 +1,7 @@
 #include "apps/study/chart_cases.h"
 
+#include <set>
+#include <string>
 #include <utility>
 
 #include "apps/study/generated_views.h"
@@ -8,6 +10,7 @@
 #include "apps/study/room_case.h"
 #include "apps/study/study_file.h"
 #include "ar/error.h"
+#include "ar/file.h"
 #include "ar/pinhole_view.h"
 #include "ar/render_scene.h"
 #include "ar/scene_models.h"
@@ -60,6 +63,13 @@ void add_photograph(const StudyPhotograph& photograph, CapturedRooms& rooms, int
       [photograph, threads] { return pinhole_view(photograph, threads); }, threads));
 }
 
+void require_different_names(const std::vector<std::unique_ptr<ChartCase>>& cases) {
+  std::set<std::string> names;
+  for (const auto& one : cases)
+    if (!names.insert(one->name()).second)
+      throw ar::InputError("two scenes are called '" + ar::one_line(one->name()) + "'");
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<ChartCase>> chart_cases(const std::vector<std::filesystem::path>& files,
@@ -76,12 +86,14 @@ std::vector<std::unique_ptr<ChartCase>> chart_cases(const std::vector<std::files
       add_photograph(photograph, rooms, threads, cases);
     for (const std::filesystem::path& scene : study.scenes) add_scene(scene, threads, cases);
   }
-  if (!generated) return cases;
-  for (View& view : generated_views(kWidth, kHeight)) {
-    std::string name = view.name;
-    cases.push_back(std::make_unique<RayCase>(
-        std::move(name), [view = std::move(view)] { return view; }, threads));
+  if (generated) {
+    for (View& view : generated_views(kWidth, kHeight)) {
+      std::string name = view.name;
+      cases.push_back(std::make_unique<RayCase>(
+          std::move(name), [view = std::move(view)] { return view; }, threads));
+    }
   }
+  require_different_names(cases);
   return cases;
 }
 

@@ -18,6 +18,8 @@ using nlohmann::ordered_json;
 
 namespace {
 
+constexpr std::size_t kMostFrames = 1'000'000;
+
 ordered_json to_json(const ChartPoint& point) {
   ordered_json out{{"job", point.job},       {"scene", point.scene},
                    {"family", point.family}, {"method", point.method},
@@ -47,21 +49,21 @@ std::string picture_name(const json& point, const char* key) {
   return name;
 }
 
-ChartPoint point_of(const json& in, std::size_t jobs) {
-  ChartPoint point{.job = in.at("job").get<std::size_t>(),
+ChartPoint point_of(const json& in) {
+  ChartPoint point{.job = count_in(in.at("job"), kMostJobs),
                    .scene = in.at("scene").get<std::string>(),
                    .family = in.at("family").get<std::string>(),
                    .method = in.at("method").get<std::string>(),
                    .oracle = in.at("oracle").get<std::string>(),
                    .picture = picture_name(in, "picture"),
                    .difference = picture_name(in, "difference")};
-  if (point.job >= jobs) throw ar::InputError(fmt::format("there is no job {}", point.job));
   for (const json& error : in.at("errors"))
     point.errors.emplace_back(error.at(0).get<std::string>(), finite_number(error.at(1)));
   if (in.contains("ms")) {
     const json& ms = in.at("ms");
-    point.times = {ms.at("frames").get<int>(), finite_number(ms.at("median")),
-                   finite_number(ms.at("low")), finite_number(ms.at("high"))};
+    point.times = {static_cast<int>(count_in(ms.at("frames"), kMostFrames)),
+                   finite_number(ms.at("median")), finite_number(ms.at("low")),
+                   finite_number(ms.at("high"))};
   }
   return point;
 }
@@ -80,6 +82,8 @@ void write_chart_part(const std::filesystem::path& file, const ChartPart& part) 
   write_part(file, {{"format", kChartFormat},
                     {"shard", {part.shard.number, part.shard.count}},
                     {"jobs", part.jobs},
+                    {"scenes", part.scenes},
+                    {"frames", part.frames},
                     {"done", part.done},
                     {"points", points}});
 }
@@ -87,23 +91,30 @@ void write_chart_part(const std::filesystem::path& file, const ChartPart& part) 
 ChartPart read_chart_part(const std::filesystem::path& file) {
   ChartPart part;
   read_part(file, kChartFormat, [&](const json& document) {
-    const json& shard = document.at("shard");
-    part.shard = {shard.at(0).get<std::size_t>(), shard.at(1).get<std::size_t>()};
-    part.jobs = document.at("jobs").get<std::size_t>();
-    part.done = document.at("done").get<std::vector<std::size_t>>();
-    for (const json& point : document.at("points"))
-      part.points.push_back(point_of(point, part.jobs));
+    part.shard = shard_in(document.at("shard"));
+    part.jobs = count_in(document.at("jobs"), kMostJobs);
+    part.scenes = document.at("scenes").get<std::vector<std::string>>();
+    part.frames = static_cast<int>(count_in(document.at("frames"), kMostFrames));
+    part.done = jobs_in(document.at("done"), part.jobs, part.shard);
+    for (const json& point : document.at("points")) {
+      part.points.push_back(point_of(point));
+      if (std::ranges::find(part.done, part.points.back().job) == part.done.end())
+        throw ar::InputError("a point belongs to no job of this part");
+    }
   });
   return part;
 }
 
 ChartPart merge_chart_parts(std::span<const ChartPart> parts) {
   ChartPart whole;
-  if (!parts.empty()) whole.jobs = parts.front().jobs;
+  if (!parts.empty()) {
+    whole.jobs = parts.front().jobs;
+    whole.scenes = parts.front().scenes;
+    whole.frames = parts.front().frames;
+  }
   for (const ChartPart& part : parts) {
-    if (part.jobs != whole.jobs)
-      throw ar::InputError(fmt::format(
-          "parts of runs with {} and with {} jobs do not belong together", whole.jobs, part.jobs));
+    if (part.jobs != whole.jobs || part.scenes != whole.scenes || part.frames != whole.frames)
+      throw ar::InputError("parts of different runs do not belong together");
     whole.done.insert(whole.done.end(), part.done.begin(), part.done.end());
     whole.points.insert(whole.points.end(), part.points.begin(), part.points.end());
   }

@@ -43,8 +43,11 @@ struct ChartPoint {
 /// Points of a run, or of a part of one.
 struct ChartPart {
   Shard shard;
-  /// Of the whole run, and those that are in this part, ascending.
+  /// Of the whole run; `done` are those that are in this part, ascending.
   std::size_t jobs = 0;
+  /// The scenes of all jobs, and frames that are timed: parts of one run agree on them.
+  std::vector<std::string> scenes;
+  int frames = 0;
   std::vector<std::size_t> done;
   /// In the order of their jobs.
   std::vector<ChartPoint> points;
@@ -59,7 +62,7 @@ void write_chart_part(const std::filesystem::path& file, const ChartPart& part);
 ChartPart read_chart_part(const std::filesystem::path& file);
 
 /// One part with every job once. Throws ar::InputError that names what is missing or twice, or when
-/// parts are of different runs.
+/// parts are of other scenes or frames.
 ChartPart merge_chart_parts(std::span<const ChartPart> parts);
 
 /// As comma separated values with a heading.

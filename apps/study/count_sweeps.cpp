@@ -71,8 +71,13 @@ TrialSweep::Plan overlapping(bool one_mesh) {
       one_mesh ? "One mesh casts many shadows over each other" : "Many shadows lie over each other",
       std::string(one_mesh ? "A mesh of so many" : "So many") +
           " boxes, and sheets without thickness, in turns, stand in each other's light, "
-          "a lamp's and one at infinity, and shadow one patch of the ground and a ball. "
-          "Wrapping counts come back to 0 at each multiple of 256.",
+          "a lamp's and one at infinity, and shadow one patch of the ground and a ball. " +
+          std::string(
+              one_mesh
+                  ? "Its volume is counted at once, and counts that wrap come back to 0 at "
+                    "each multiple of 256."
+                  : "Volumes are counted in batches that become a flag, so that no count comes "
+                    "back to 0."),
       one_mesh ? "parts of the mesh" : "casters",
       kWrongPixels,
       kRays};

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ar/error.h"
+#include "ar/file.h"
 #include "ar/image_file.h"
 #include "ar/pinhole_view.h"
 #include "ar/video.h"
@@ -43,11 +44,20 @@ ar::Image channel(const std::vector<std::uint8_t>& rgba_rows, const ar::Image& l
   return out;
 }
 
+/// Sweeps compare with what the photograph as it is says.
+void require_poses(const DeskScene& scene, const ar::TrackResult& track, const fs::path& picture) {
+  if (!track.world_from_camera || !track.world.camera_from_body)
+    throw ar::InputError(ar::one_line(picture.string()) + ": no tags of " +
+                         ar::one_line(scene.file().file.string()) + " say where the camera is");
+}
+
 std::unique_ptr<DeskScene> read_still(const fs::path& folder, const char* name) {
   auto scene = std::make_unique<DeskScene>(ar::read_scene(folder / name));
   scene->photograph = ar::read_image_rgb(folder / "background.png");
   ar::Tracker& tracker = scene->tracker(scene->photograph.width, scene->photograph.height, false);
-  scene->poses = poses_of(tracker.update(scene->photograph, 0.0));
+  const ar::TrackResult track = tracker.update(scene->photograph, 0.0);
+  require_poses(*scene, track, folder / "background.png");
+  scene->poses = poses_of(track);
   return scene;
 }
 
@@ -57,9 +67,12 @@ std::unique_ptr<DeskScene> read_video(const fs::path& folder, std::int64_t frame
   ar::VideoReader video = ar::VideoReader::open_file(folder / "video" / "handle.avi");
   ar::Tracker& tracker = scene->tracker(video.width(), video.height(), false);
   while (const std::optional<ar::VideoFrame> next = video.next()) {
-    scene->poses = poses_of(tracker.update(next->image, next->time_s));
+    const ar::TrackResult track = tracker.update(next->image, next->time_s);
     scene->photograph = next->image;
-    if (next->index == frame) return scene;
+    if (next->index != frame) continue;
+    require_poses(*scene, track, folder / "video" / "handle.avi");
+    scene->poses = poses_of(track);
+    return scene;
   }
   throw ar::InputError((folder / "video" / "handle.avi").string() + ": too short");
 }
@@ -122,12 +135,12 @@ ar::TrackerOptions DeskScene::options() const {
 }
 
 ar::Tracker& DeskScene::tracker(int width, int height, bool filter) {
-  auto found = trackers_.find({width, filter});
+  auto found = trackers_.find({width, height, filter});
   if (found == trackers_.end()) {
     ar::TrackerOptions chosen = options();
     if (!filter) chosen.filter.reset();
     found = trackers_
-                .emplace(std::pair{width, filter},
+                .emplace(std::tuple{width, height, filter},
                          ar::Tracker(camera(width, height), file_.tags, chosen))
                 .first;
   }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -80,7 +81,8 @@ class DeskScene {
   ar::CameraModel camera_;
   ar::Response response_;
   ar::SceneNodes nodes_;
-  std::map<std::pair<int, bool>, ar::Tracker> trackers_;
+  /// By width, height and filter.
+  std::map<std::tuple<int, int, bool>, ar::Tracker> trackers_;
   std::optional<ar::TagDetector> detector_;
 };
 

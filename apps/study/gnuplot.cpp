@@ -1,5 +1,6 @@
 #include "apps/study/gnuplot.h"
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
@@ -31,8 +32,12 @@ void plot(const std::filesystem::path& file, int width, int height, const std::s
   // The script goes in by standard input, so no shell sees a name.
   std::FILE* const pipe = popen("gnuplot - >/dev/null 2>&1", "w");
   if (pipe == nullptr) throw ar::InputError("gnuplot: cannot be started");
+  // One that ends early is seen by its status; the signal would end this program.
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
   const bool written = std::fwrite(whole.data(), 1, whole.size(), pipe) == whole.size();
-  if (pclose(pipe) != 0 || !written)
+  const bool drawn = pclose(pipe) == 0;
+  std::signal(SIGPIPE, before);
+  if (!drawn || !written)
     throw ar::InputError(ar::one_line(file.string()) + ": gnuplot could not draw it");
   pending.commit();
 }

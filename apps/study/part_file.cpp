@@ -48,8 +48,9 @@ std::vector<fs::path> find_parts(const fs::path& folder, std::string_view name) 
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    const auto shard = shard_of(entry->path().filename().string(), name);
-    if (!shard) continue;
+    const fs::path file = entry->path().filename();
+    const auto shard = shard_of(file.string(), name);
+    if (!shard || file != part_file({}, name, *shard)) continue;
     if (count.value_or(shard->count) != shard->count)
       throw ar::InputError(fmt::format("{}: parts of {} and of {} lie there; take away the others",
                                        ar::one_line(folder.string()), *count, shard->count));
@@ -92,7 +93,32 @@ void read_part(const fs::path& file, std::string_view format,
 }
 
 void write_part(const fs::path& file, const nlohmann::ordered_json& document) {
-  ar::write_file(file, document.dump(1) + "\n");
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+  ar::write_file(file, document.dump(1, ' ', false, kReplace) + "\n");
+}
+
+std::size_t count_in(const json& value, std::size_t most) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
+    throw ar::InputError(
+        fmt::format("{} is no count up to {}", ar::one_line(value.dump().substr(0, 80)), most));
+  return value.get<std::size_t>();
+}
+
+Shard shard_in(const json& value) {
+  Shard shard{count_in(value.at(0), kMostShards), count_in(value.at(1), kMostShards)};
+  if (shard.number < 1 || shard.number > shard.count)
+    throw ar::InputError("shard: there is no such part");
+  return shard;
+}
+
+std::vector<std::size_t> jobs_in(const json& value, std::size_t jobs, const Shard& shard) {
+  std::vector<std::size_t> done;
+  for (const json& job : value) {
+    done.push_back(count_in(job, jobs));
+    if (!shard.has(done.back()))
+      throw ar::InputError(fmt::format("job {} is of another part", done.back()));
+  }
+  return done;
 }
 
 void require_every_job(std::size_t jobs, std::span<const std::size_t> done) {

@@ -32,6 +32,16 @@ void read_part(const std::filesystem::path& file, std::string_view format,
 /// Writes beside, then renames; an object or array a line. Throws ar::InputError.
 void write_part(const std::filesystem::path& file, const nlohmann::ordered_json& document);
 
+/// What files say, checked. Throws ar::InputError: no whole number from 0 to `most`.
+std::size_t count_in(const nlohmann::json& value, std::size_t most);
+/// [number, count].
+Shard shard_in(const nlohmann::json& value);
+/// The numbers of jobs of this shard.
+std::vector<std::size_t> jobs_in(const nlohmann::json& value, std::size_t jobs, const Shard& shard);
+
+/// Jobs that a run may have.
+inline constexpr std::size_t kMostJobs = 100'000'000;
+
 /// Are these all the numbers from 0 on, `jobs` of them? Throws ar::InputError if not.
 /// Precondition: ascending.
 void require_every_job(std::size_t jobs, std::span<const std::size_t> done);
@@ -39,7 +49,7 @@ void require_every_job(std::size_t jobs, std::span<const std::size_t> done);
 /// Is the name a file in its folder and nothing else: letters, digits, '-', '_' and '.'?
 bool is_plain_name(std::string_view name);
 
-/// The text with everything that is_plain_name refuses replaced by '_'.
+/// The text's first 150 bytes with everything that is_plain_name refuses replaced by '_'.
 std::string plain_name(std::string_view text);
 
 }  // namespace gnomon::apps::study

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "apps/study/bounding_box.h"
 #include "apps/study/planned_sweep.h"
 #include "pipeline/bounds.h"
 #include "pipeline/mesh_simplify.h"
@@ -76,15 +77,6 @@ PlannedSweep::Plan plan(const std::shared_ptr<Desk>& desk, SweepText text,
 }
 
 bool is_phantom(const pipeline::Object& object) { return object.role == pipeline::Role::phantom; }
-
-ModelPointer bounding_box(const pipeline::Model& model) {
-  pipeline::Bounds bounds;
-  for (const pipeline::Part& part : model.parts)
-    for (const glm::vec4& p : part.mesh.positions) bounds.add(glm::dvec3(p));
-  pipeline::Mesh box = pipeline::flat_box_mesh(glm::vec3((bounds.high - bounds.low) * 0.5));
-  for (glm::vec4& p : box.positions) p += glm::vec4(glm::vec3(bounds.center()), 0.0f);
-  return pipeline::model_of(std::move(box));
-}
 
 /// Millimetres; then comes the bounding box.
 constexpr double kErrors_mm[] = {0, 0.2, 0.5, 1, 2, 5, 10, 20, 50};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "apps/study/bounding_box.h"
 #include "apps/study/difference_picture.h"
 #include "apps/study/ray_masks.h"
 #include "ar/augment.h"
@@ -15,10 +16,8 @@
 #include "ar/metrics.h"
 #include "ar/shadow_settings.h"
 #include "ar/stopwatch.h"
-#include "pipeline/bounds.h"
 #include "pipeline/mesh_simplify.h"
 #include "pipeline/reduced_occluder.h"
-#include "pipeline/shapes.h"
 
 namespace gnomon::apps::study {
 
@@ -52,16 +51,6 @@ struct Setting {
 
 ModelPointer simplified(const ModelPointer& model, double error_m) {
   return std::make_shared<const pipeline::Model>(pipeline::simplify_mesh(*model, error_m).model);
-}
-
-ModelPointer bounding_box(const ModelPointer& model) {
-  pipeline::Bounds bounds;
-  for (const pipeline::Part& part : model->parts)
-    for (const glm::vec4& p : part.mesh.positions) bounds.add(glm::dvec3(p));
-  pipeline::Mesh box = pipeline::flat_box_mesh(glm::vec3(0.5 * (bounds.high - bounds.low)));
-  const glm::vec4 middle(glm::vec3(0.5 * (bounds.high + bounds.low)), 0.0f);
-  for (glm::vec4& p : box.positions) p += middle;
-  return pipeline::model_of(std::move(box));
 }
 
 Scene with_detail(Scene scene, const Setting& setting) {
@@ -100,7 +89,9 @@ std::vector<Setting> settings_for(const ar::SceneFile& file, int threads) {
   for (const double error_m : {0.001, 0.003, 0.01, 0.03})
     add(fmt::format("phantoms within {} mm", 1000.0 * error_m), "phantoms").detail =
         [error_m](const ModelPointer& model) { return simplified(model, error_m); };
-  add("phantoms as boxes", "phantoms").detail = bounding_box;
+  add("phantoms as boxes", "phantoms").detail = [](const ModelPointer& model) {
+    return bounding_box(*model);
+  };
   add("no phantoms", "phantoms").detail = [](const ModelPointer&) { return ModelPointer(); };
   for (const std::size_t triangles : {500, 100, 20})
     add(fmt::format("casters of {} triangles", triangles), "reduced casters").occluder_triangles =
@@ -136,8 +127,7 @@ class Volumes final : public Contender {
   Volumes(const Shared& shared, Setting setting)
       : shared_(shared),
         setting_(std::move(setting)),
-        scene_(with_detail(shared.at.scene, setting_)),
-        timed_(shared.at.lens, setting_.options) {}
+        scene_(with_detail(shared.at.scene, setting_)) {}
 
   Charted measure() override {
     ar::AugmentOptions options = setting_.options;
@@ -150,8 +140,9 @@ class Volumes final : public Contender {
     return out;
   }
   double frame_ms() override {
+    if (!timed_) timed_.emplace(shared_.at.lens, setting_.options);
     ar::Stopwatch watch;
-    draw(timed_);
+    draw(*timed_);
     return watch.lap_ms();
   }
 
@@ -163,7 +154,7 @@ class Volumes final : public Contender {
   const Shared& shared_;
   Setting setting_;
   Scene scene_;
-  ar::Augmenter timed_;
+  std::optional<ar::Augmenter> timed_;
 };
 
 /// The photograph as it is.

@@ -8,6 +8,7 @@
 #include "ar/file.h"
 #include "ar/image_file.h"
 #include "ar/session.h"
+#include "ar/session_options.h"
 
 namespace gnomon::apps::study {
 
@@ -29,12 +30,6 @@ std::optional<ar::Image> read_mask(const fs::path& file, const ar::Image& photog
   return read_like(file, photograph, true);
 }
 
-ar::CameraModel camera_of(const ar::SceneFile& file, const ar::Image& photograph) {
-  ar::require_photograph(file);
-  return ar::camera_for_picture(file.pinhole ? *file.pinhole : ar::read_camera(file.camera_file),
-                                photograph.width, photograph.height);
-}
-
 }  // namespace
 
 PlacedPhotograph place(const StudyPhotograph& photograph, int threads) {
@@ -52,7 +47,7 @@ PlacedPhotograph place(const StudyPhotograph& photograph, int threads) {
     throw ar::InputError(fmt::format("{}: the tags of {} are not all found in it",
                                      ar::one_line(photograph.photograph.string()),
                                      ar::one_line(photograph.scene.string())));
-  ar::Lens lens(camera_of(file, photo));
+  ar::Lens lens(ar::photograph_camera(file, photo.width, photo.height));
   return {.file = std::move(file),
           .lens = std::move(lens),
           .photograph = photo,

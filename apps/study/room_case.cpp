@@ -82,7 +82,7 @@ class Differential final : public Contender {
  private:
   ar::Augmented draw() {
     const PlacedPhotograph& at = shared_.at;
-    return shared_.room.augmenter(setting_, at.lens, at.world_from_camera)
+    return shared_.room.augmenter(setting_, at)
         .augment(at.photograph, at.scene, at.world_from_camera);
   }
 

@@ -10,7 +10,6 @@
 namespace gnomon::apps::study {
 
 Shard parse_shard(const std::string& option, const std::string& text) {
-  constexpr std::size_t kMost = 100'000;
   Shard shard;
   const char* const end = text.data() + text.size();
   const auto number = std::from_chars(text.data(), end, shard.number);
@@ -19,10 +18,10 @@ Shard parse_shard(const std::string& option, const std::string& text) {
     const auto count = std::from_chars(number.ptr + 1, end, shard.count);
     read = count.ec == std::errc() && count.ptr == end;
   }
-  if (!read || shard.number < 1 || shard.number > shard.count || shard.count > kMost)
+  if (!read || shard.number < 1 || shard.number > shard.count || shard.count > kMostShards)
     throw ar::InputError(
         fmt::format("{}: '{}' is no part such as 2/8 (1 to {} of at most that many)", option,
-                    ar::one_line(text), kMost));
+                    ar::one_line(text), kMostShards));
   return shard;
 }
 

@@ -7,6 +7,8 @@
 
 namespace gnomon::apps::study {
 
+inline constexpr std::size_t kMostShards = 100'000;
+
 struct Shard {
   /// From 1 to count.
   std::size_t number = 1, count = 1;
@@ -16,7 +18,7 @@ struct Shard {
   bool operator==(const Shard&) const = default;
 };
 
-/// Reads "i/n" with 1 <= i <= n <= 100000. Throws ar::InputError that names `option`.
+/// Reads "i/n" with 1 <= i <= n <= kMostShards. Throws ar::InputError that names `option`.
 Shard parse_shard(const std::string& option, const std::string& text);
 
 }  // namespace gnomon::apps::study

@@ -8,6 +8,8 @@
 
 #include "ar/capture_file.h"
 #include "ar/differential_augment.h"
+#include "ar/error.h"
+#include "ar/file.h"
 #include "ar/image_file.h"
 #include "ar/scene_file.h"
 #include "ar/scene_light.h"
@@ -45,6 +47,20 @@ std::size_t not_finite(const raster::ColorBuffer& color, int width, int height) 
     }
   return count;
 }
+
+/// A value that is what it was when this goes.
+template <class T>
+class Restored {
+ public:
+  explicit Restored(T& value) : value_(value), was_(value) {}
+  ~Restored() { value_ = std::move(was_); }
+  Restored(const Restored&) = delete;
+  Restored& operator=(const Restored&) = delete;
+
+ private:
+  T& value_;
+  T was_;
+};
 
 }  // namespace
 
@@ -85,7 +101,9 @@ struct SoftRoom::Impl {
           object.world_from_model[3] += glm::vec4(kMoved, 0.0f);
       occluders.apply(scene);
     }
-    raster::require(file->world_from_camera.has_value(), "the room's camera has a place");
+    if (!file->world_from_camera)
+      throw ar::InputError(ar::one_line(file->file.string()) +
+                           ": [camera].world_from_camera: missing");
     camera = pinhole.camera(*file->world_from_camera, file->near_m, file->far_m);
     receivers = ar::visible_patches(lit, camera);
     view = std::move(pinhole);
@@ -108,8 +126,8 @@ struct SoftRoom::Impl {
   SoftPicture draw(std::size_t scene, double power_share, const pipeline::ShadowTakeOptions& take,
                    const pipeline::ToneCurve* tone) {
     Light& light = light_of(power_share);
-    const pipeline::ToneCurve own = lit.tone;
     // The method looks at the curve while it records, and nothing else of the light depends on it.
+    const Restored<pipeline::ToneCurve> own(lit.tone);
     if (tone) lit.tone = *tone;
     const int width = view->width(), height = view->height();
     raster::ColorBuffer color(
@@ -125,7 +143,6 @@ struct SoftRoom::Impl {
         {.threads = threads});
     SoftPicture out{pipeline::finish_picture(under, color, lit.tone, options.take),
                     not_finite(color, width, height), light.method->shadows().shadows.size()};
-    lit.tone = own;
     return out;
   }
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <system_error>
 
 #include "apps/output_folder.h"
 #include "apps/study/part_file.h"
@@ -44,6 +45,9 @@ std::size_t jobs_of(const Sweeps& sweeps, const Shard& shard) {
 StabilityPart run_stability(const Sweeps& sweeps, const Shard& shard, const fs::path& out,
                             const std::function<void(std::size_t)>& progress) {
   make_folder(out);
+  const fs::path file = part_file(out, kStabilityName, shard);
+  std::error_code ignored;
+  fs::remove(file, ignored);
   StabilityPart part{.shard = shard, .jobs = jobs_of(sweeps, {})};
   std::size_t job = 0;
   for (std::size_t number = 0; number < sweeps.size(); ++number) {
@@ -58,7 +62,7 @@ StabilityPart run_stability(const Sweeps& sweeps, const Shard& shard, const fs::
       progress(part.columns.size());
     }
   }
-  write_stability_part(part_file(out, kStabilityName, shard), part);
+  write_stability_part(file, part);
   return part;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "apps/study/shard.h"
-#include "apps/study/stability_cell.h"
+#include "apps/study/stability_part.h"
 #include "apps/study/sweep.h"
 
 namespace gnomon::apps::study {

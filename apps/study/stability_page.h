@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apps/study/stability_cell.h"
+#include "apps/study/stability_part.h"
 
 namespace gnomon::apps::study {
 

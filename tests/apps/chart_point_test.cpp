@@ -30,6 +30,8 @@ ChartPoint point(std::size_t job, std::string method, double ms, double error) {
 
 ChartPart whole_run() {
   return {.jobs = 3,
+          .scenes = {"scene 0", "scene 1", "scene 2"},
+          .frames = 3,
           .done = {0, 1, 2},
           .points = {point(0, "a, \"quoted\"", 1.0, 0.1), point(0, "b", 2.0, 0.05),
                      point(1, "a", 1.0, 0.0), point(2, "a", 4.0, 1e-9)}};
@@ -37,7 +39,10 @@ ChartPart whole_run() {
 
 /// The part of the run.
 ChartPart part_of(const ChartPart& whole, const Shard& shard) {
-  ChartPart part{.shard = shard, .jobs = whole.jobs};
+  ChartPart part = whole;
+  part.shard = shard;
+  part.done.clear();
+  part.points.clear();
   for (const std::size_t job : whole.done)
     if (shard.has(job)) part.done.push_back(job);
   for (const ChartPoint& at : whole.points)
@@ -56,7 +61,7 @@ std::string refusal(const std::filesystem::path& file, const std::string& text) 
 }
 
 TEST(ChartPart, PartsPutTogetherAreTheWholeRun) {
-  const TemporaryFolder folder;
+  const ar::TemporaryFolder folder;
   std::vector<ChartPart> parts;
   for (const std::size_t number : {2, 1}) {
     const auto file = part_file(folder.path(), "chart", {number, 2});
@@ -64,26 +69,32 @@ TEST(ChartPart, PartsPutTogetherAreTheWholeRun) {
     parts.push_back(read_chart_part(file));
   }
   EXPECT_EQ(merge_chart_parts(parts), whole_run());
+  parts[1].scenes[2] = "another";
+  EXPECT_THROW(merge_chart_parts(parts), ar::InputError);
   parts.pop_back();
   EXPECT_THROW(merge_chart_parts(parts), ar::InputError);
 }
 
 TEST(ChartPart, FilesThatAreNoneAreRefusedInOneLine) {
-  const TemporaryFolder folder;
+  const ar::TemporaryFolder folder;
   const auto file = folder.path() / "chart.json";
   const std::string head =
-      R"({"format":"gnomon-chart 1","shard":[1,1],"jobs":1,"done":[0],"points":[)";
+      R"({"format":"gnomon-chart 1","shard":[1,1],"jobs":1,"scenes":["s"],"frames":0,"done":[0],"points":[)";
   const std::string point =
       R"({"job":0,"scene":"s","family":"f","method":"m","oracle":"o","errors":[["e",1]])";
   EXPECT_EQ(refusal(file, head + point + "}]}"), "taken");
-  for (const std::string& text :
-       {std::string(""), std::string("{"), std::string("[]"),
-        std::string(R"({"format":"gnomon-chart 9"})"), head + "{}]}",
-        head + point + R"(,"picture":"../../etc/passwd"}]})",
-        head + R"({"job":7,"scene":"s","family":"f","method":"m","oracle":"o","errors":[]}]})",
-        head +
-            R"({"job":0,"scene":"s","family":"f","method":"m","oracle":"o","errors":[["e",-1]]}]})",
-        head + R"({"job":0,"scene":1,"family":"f","method":"m","oracle":"o","errors":[]}]})"}) {
+  for (
+      const std::string& text : std::vector<std::string>{
+          "", "{", "[]", std::string(R"({"format":"gnomon-chart 9"})"), head + "{}]}",
+          head + point + R"(,"picture":"../../etc/passwd"}]})",
+          R"({"format":"gnomon-chart 1","shard":[0,0],"jobs":1,"scenes":[],"frames":0,"done":[0],"points":[]})",
+          R"({"format":"gnomon-chart 1","shard":[1,1],"jobs":1e300,"scenes":[],"frames":0,"done":[0],"points":[]})",
+          R"({"format":"gnomon-chart 1","shard":[1,1],"jobs":1,"scenes":[],"frames":-1,"done":[0],"points":[]})",
+          R"({"format":"gnomon-chart 1","shard":[1,2],"jobs":2,"scenes":[],"frames":0,"done":[1],"points":[]})",
+          head + R"({"job":7,"scene":"s","family":"f","method":"m","oracle":"o","errors":[]}]})",
+          head +
+              R"({"job":0,"scene":"s","family":"f","method":"m","oracle":"o","errors":[["e",-1]]}]})",
+          head + R"({"job":0,"scene":1,"family":"f","method":"m","oracle":"o","errors":[]}]})"}) {
     const std::string what = refusal(file, text);
     EXPECT_THAT(what, HasSubstr("chart.json: ")) << text;
     EXPECT_THAT(what, Not(HasSubstr("\n"))) << text;

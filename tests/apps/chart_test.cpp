@@ -54,12 +54,15 @@ TEST_F(Chart, PartsPutTogetherAreTheWholeRunToTheByte) {
 }
 
 TEST_F(Chart, TimesAndDrawsASmallChart) {
-  const Outcome got = run({"chart", small_study(), "--no-generated", "--frames", "1", "--shard",
-                           "2/2", "--out", file("out")});
+  const Outcome got =
+      run({"chart", small_study(), "--no-generated", "--frames", "1", "--out", file("out")});
   ASSERT_EQ(got.status, 0) << got.err;
-  const json part = json::parse(text_of(file("out/chart-2-of-2.json")));
-  EXPECT_EQ(part["format"], "gnomon-chart 1");
-  for (const json& point : part["points"]) EXPECT_GT(point["ms"]["median"], 0.0) << point;
+  const json whole = json::parse(text_of(file("out/chart.json")));
+  EXPECT_EQ(whole["format"], "gnomon-chart 1");
+  for (const json& point : whole["points"]) EXPECT_GT(point["ms"]["median"], 0.0) << point;
+  const std::string drawing = text_of(file("out/chart.svg"));
+  EXPECT_THAT(drawing, HasSubstr("light's shadow"));
+  EXPECT_THAT(drawing, HasSubstr("</svg>"));
 }
 
 TEST_F(Chart, SaysInOneLineWhatIsWrong) {

@@ -79,6 +79,24 @@ TEST_F(FitCommand, SaysInOneLineWhatIsWrongAndWritesNothing) {
   }
 }
 
+// What the scene names lies in the folder that the results go to.
+TEST_F(FitCommand, WritesBesideTheModelsOfItsScene) {
+  fs::create_directories(file("room"));
+  std::string text = text_of(kScene);
+  for (const std::string folder : {"../desk/virtual/", "../desk/phantoms/"})
+    for (std::size_t at; (at = text.find(folder)) != std::string::npos;)
+      text.replace(at, folder.size(), "");
+  std::ofstream(file("room/given.toml")) << text;
+  for (const char* folder : {"virtual", "phantoms"})
+    for (const auto& entry : fs::directory_iterator(kSource / "examples/desk" / folder))
+      fs::copy(entry.path(), file("room"));
+  const Outcome got = run(
+      {"fit", file("room/given.toml"), "--error", "4px", "--out", file("room"), "--repeat", "1"});
+  ASSERT_EQ(got.status, 0) << got.err;
+  const Outcome again = run({"render", file("room/scene.toml"), "--out", file("again")});
+  EXPECT_EQ(again.status, 0) << again.err;
+}
+
 TEST_F(FitCommand, RefusesToReplaceItsInput) {
   fs::copy_file(kSource / "examples/kuehl/both_methods.toml", file("scene.toml"));
   std::string text = text_of(file("scene.toml"));

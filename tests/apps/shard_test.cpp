@@ -43,7 +43,7 @@ TEST(Shard, TextThatIsNoneIsRefusedWithTheOption) {
 }
 
 TEST(PartFile, PartsAreFoundInOrderAndMissedByNumber) {
-  const TemporaryFolder folder;
+  const ar::TemporaryFolder folder;
   const auto touch = [&](std::size_t number, std::size_t count) {
     std::ofstream(part_file(folder.path(), "chart", {number, count})) << "{}";
   };

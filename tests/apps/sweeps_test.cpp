@@ -108,12 +108,16 @@ TEST(CameraSweeps, ANearPlaneThatCutsAVolumeHarmsNoMethod) {
     EXPECT_LT(cut.of(method), kEdges) << method;
 }
 
-TEST(CountSweeps, WrappingCountsAreRightWith255VolumesAndLoseTheShadowOf256) {
+// Many casters are counted in batches; one mesh, whose volume is counted at once, may still wrap.
+TEST(CountSweeps, AnyNumberOfCastersIsRightAndOneMeshLosesTheShadowOf256Parts) {
   for (const char* sweep : {"overlaps", "overlaps-in-mesh"}) {
     const Shares most(sweep, "255", 0), wrapped(sweep, "256", 0);
     for (const char* method : {"z-pass", "z-fail", "z-fail, single-sided"}) {
       EXPECT_LT(most.of(method), kEdges) << sweep << ", " << method;
-      EXPECT_GT(wrapped.of(method), 0.05) << sweep << ", " << method;
+      if (sweep == std::string("overlaps"))
+        EXPECT_LT(wrapped.of(method), kEdges) << method;
+      else
+        EXPECT_GT(wrapped.of(method), 0.05) << method;
     }
     EXPECT_LT(wrapped.of("z-pass, saturating"), kEdges) << sweep;
     EXPECT_LT(wrapped.of("alias-free map"), kEdges) << sweep;

@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
+#include "apps/study/ray_masks.h"
 #include "ar/camera.h"
 #include "ar/image_file.h"
 #include "ar/metrics.h"
 #include "ar/scene_file.h"
 #include "ar/session.h"
-#include "pipeline/ray_reference.h"
 
 using namespace gnomon;
 
@@ -39,47 +39,6 @@ constexpr DeskScene kScenes[] = {{"01_torus_on_house", 0.62, 0.58},
                                  {"03_tin_on_torus", 0.98, 0.96},
                                  {"04_torus_and_sphere_on_tin", 0.87, 0.82}};
 
-struct Masks {
-  ar::Image shadow, shadow_on_virtual, object;
-};
-
-ar::Image empty_mask(const ar::Image& like) {
-  return {like.width, like.height, 1,
-          std::vector<std::uint8_t>(static_cast<std::size_t>(like.width) * like.height)};
-}
-
-/// The masks by rays through the pixel centres of the distorted photograph.
-Masks cast_masks(const ar::SceneFile& file, const ar::SessionResult& result,
-                 const ar::Image& photo) {
-  const ar::Lens lens(
-      ar::camera_for_picture(ar::read_camera(file.camera_file), photo.width, photo.height));
-  const pipeline::RayReference rays(result.scene);
-  const glm::dmat4& world_from_camera = *result.world_from_camera;
-  Masks masks{empty_mask(photo), empty_mask(photo), empty_mask(photo)};
-  const glm::vec4 light = result.scene.lights.at(0).position;
-  for (int y = 0; y < photo.height; ++y)
-    for (int x = 0; x < photo.width; ++x) {
-      const std::optional<glm::dvec2> n = lens.undistort({x, y});
-      if (!n) continue;
-      const pipeline::RayHit hit = rays.trace(
-          {glm::dvec3(world_from_camera[3]), glm::dmat3(world_from_camera) * glm::dvec3(*n, 1.0)});
-      if (!hit.hit) continue;
-      const bool on_virtual =
-          result.scene.objects[hit.object].role == pipeline::Role::virtual_object;
-      const auto by_real = rays.shadow(hit, light, pipeline::Among::phantoms);
-      if (on_virtual) {
-        masks.object.at(x, y)[0] = 255;
-        const bool lit_otherwise =
-            !rays.shadow(hit, light, pipeline::Among::virtual_objects).in_shadow;
-        masks.shadow_on_virtual.at(x, y)[0] = by_real.blocked && lit_otherwise ? 255 : 0;
-      } else if (!by_real.in_shadow &&
-                 rays.shadow(hit, light, pipeline::Among::virtual_objects).blocked) {
-        masks.shadow.at(x, y)[0] = 255;
-      }
-    }
-  return masks;
-}
-
 struct Outcome {
   double shadow_iou_rays, shadow_iou_truth, virtual_iou_rays, virtual_iou_truth, virtual_rays_truth,
       object_iou_truth;
@@ -103,7 +62,10 @@ Outcome run(const std::filesystem::path& scene_path, const std::string& truth_na
   EXPECT_TRUE(result.augmented.has_value());
   if (!result.augmented) return {};
   const ar::Augmented& got = *result.augmented;
-  const Masks rays = cast_masks(file, result, photo);
+  const ar::Lens lens(
+      ar::camera_for_picture(ar::read_camera(file.camera_file), photo.width, photo.height));
+  const apps::study::RayMasks rays =
+      apps::study::ray_masks(result.scene, lens, *result.world_from_camera);
   const auto truth = [&](const char* what) { return ar::read_image(kTruth / truth_name / what); };
   const ar::Image true_photo = ar::read_image_rgb(kTruth / truth_name / "photo.png");
   const ar::Image true_shadow = truth("shadow_mask.png");

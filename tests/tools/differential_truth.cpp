@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "apps/study/ray_masks.h"
 #include "ar/image_file.h"
 #include "ar/lit_scene_file.h"
 #include "ar/model_file.h"
@@ -44,17 +45,7 @@ TruthSet read_truths(const fs::path& lit, const fs::path& capture, const fs::pat
 }
 
 std::vector<pipeline::Ray> photo_rays(const TruthSet& set) {
-  const Lens lens(set.camera);
-  std::vector<pipeline::Ray> rays;
-  for (int y = 0; y < set.background.height; ++y) {
-    for (int x = 0; x < set.background.width; ++x) {
-      const auto at = lens.undistort({x, y});
-      const glm::dvec3 direction(at.value_or(glm::dvec2(0.0)), 1.0);
-      rays.push_back(
-          {glm::dvec3(set.world_from_camera[3]), glm::dmat3(set.world_from_camera) * direction});
-    }
-  }
-  return rays;
+  return apps::study::lens_rays(Lens(set.camera), set.world_from_camera);
 }
 
 namespace {

@@ -1,7 +1,9 @@
-#include "apps/study/stability_cell.h"
+#include "apps/study/stability_part.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -51,15 +53,17 @@ double amount(const json& value) {
 }
 
 StabilityColumn column_of(const json& in, const StabilityPart& part) {
-  StabilityColumn column{.job = in.at("job").get<std::size_t>(),
-                         .sweep = in.at("sweep").get<std::size_t>(),
+  StabilityColumn column{.job = count_in(in.at("job"), kMostJobs),
+                         .sweep = count_in(in.at("sweep"), kMostJobs),
                          .value = in.at("value").get<std::string>(),
-                         .inputs = in.at("inputs").get<std::size_t>()};
+                         .inputs = count_in(in.at("inputs"), kMostJobs)};
+  if (!part.shard.has(column.job))
+    throw ar::InputError(fmt::format("job {} is of another part", column.job));
   if (column.sweep >= part.sweeps.size())
     throw ar::InputError(fmt::format("there is no sweep {}", column.sweep));
   for (const json& outcome : in.at("outcomes")) {
-    column.outcomes.push_back(
-        {amount(outcome.at(0)), amount(outcome.at(1)), outcome.at(2).get<std::size_t>()});
+    column.outcomes.push_back({amount(outcome.at(0)), amount(outcome.at(1)),
+                               count_in(outcome.at(2), std::numeric_limits<std::uint32_t>::max())});
     column.worst.push_back(amount(outcome.at(3)));
   }
   if (column.outcomes.size() != part.methods[column.sweep].size())
@@ -84,9 +88,8 @@ void write_stability_part(const std::filesystem::path& file, const StabilityPart
 StabilityPart read_stability_part(const std::filesystem::path& file) {
   StabilityPart part;
   read_part(file, kStabilityFormat, [&](const json& document) {
-    const json& shard = document.at("shard");
-    part.shard = {shard.at(0).get<std::size_t>(), shard.at(1).get<std::size_t>()};
-    part.jobs = document.at("jobs").get<std::size_t>();
+    part.shard = shard_in(document.at("shard"));
+    part.jobs = count_in(document.at("jobs"), kMostJobs);
     for (const json& sweep : document.at("sweeps")) {
       part.sweeps.push_back(text_of(sweep));
       part.methods.push_back(sweep.at("methods").get<std::vector<std::string>>());

@@ -1,6 +1,6 @@
 // What sweeps found, as files, and where a method gives up. Oracles: what was written; closed
 // forms.
-#include "apps/study/stability_cell.h"
+#include "apps/study/stability_part.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ Sweeps two_sweeps() {
 }
 
 TEST(Stability, PartsPutTogetherAreTheWholeRunToTheByte) {
-  const TemporaryFolder folder;
+  const ar::TemporaryFolder folder;
   const auto run = [&](const char* name, const Shard& shard) {
     return run_stability(two_sweeps(), shard, folder.path() / name, [](std::size_t) {});
   };
@@ -53,7 +53,7 @@ TEST(Stability, PartsPutTogetherAreTheWholeRunToTheByte) {
 }
 
 TEST(Stability, AMethodGivesUpWhereItDoesNotComeBack) {
-  const TemporaryFolder folder;
+  const ar::TemporaryFolder folder;
   const StabilityPart part =
       run_stability(two_sweeps(), {}, folder.path() / "out", [](std::size_t) {});
   EXPECT_EQ(inputs_of(part), 20u);
