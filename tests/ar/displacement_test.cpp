@@ -105,6 +105,25 @@ TEST(Displacement, LooksAtEachChannel) {
   EXPECT_EQ(px(red, blue), std::numeric_limits<double>::infinity());
 }
 
+// A value that lies between two neighbours' is looked for from one of their ends, which may be farther
+// away than the radius. Oracle: a mirrored or turned picture has the same error.
+TEST(Displacement, IsTheSameForMirroredAndTurnedPictures) {
+  const auto step = [](int at) { return [at](int x, int) { return x <= at ? 255 : 0; }; };
+  // A pixel of 128 lies between the two sides of the step, which is up to 17 pixels away.
+  for (int at = 14; at <= 46; ++at) {
+    const Image reference = picture(step(at));
+    const Image test = picture([&](int x, int y) { return x == 32 ? 128 : step(at)(x, y); });
+    const auto mirrored = [](const Image& image) {
+      return picture([&](int x, int y) { return image.at(image.width - 1 - x, y)[0]; });
+    };
+    const auto turned = [](const Image& image) {
+      return picture([&](int x, int y) { return image.at(y, x)[0]; });
+    };
+    EXPECT_EQ(px(reference, test), px(mirrored(reference), mirrored(test))) << at;
+    EXPECT_EQ(px(reference, test), px(turned(reference), turned(test))) << at;
+  }
+}
+
 TEST(PictureError, OfFlipIsAMeanOverWhatIsTouched) {
   const Image grey = picture([](int, int) { return kLight; });
   const Image blob = with_dark([](int x, int y) { return x < 8 && y < 8; });
