@@ -105,8 +105,8 @@ TEST(Displacement, LooksAtEachChannel) {
   EXPECT_EQ(px(red, blue), std::numeric_limits<double>::infinity());
 }
 
-// A value that lies between two neighbours' is looked for from one of their ends, which may be farther
-// away than the radius. Oracle: a mirrored or turned picture has the same error.
+// A value that lies between two neighbours' is looked for from one of their ends, which may be
+// farther away than the radius. Oracle: a mirrored or turned picture has the same error.
 TEST(Displacement, IsTheSameForMirroredAndTurnedPictures) {
   const auto step = [](int at) { return [at](int x, int) { return x <= at ? 255 : 0; }; };
   // A pixel of 128 lies between the two sides of the step, which is up to 17 pixels away.
