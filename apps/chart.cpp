@@ -14,6 +14,7 @@
 #include "apps/study/chart.h"
 #include "apps/study/chart_cases.h"
 #include "apps/study/gnuplot.h"
+#include "ar/error.h"
 
 namespace gnomon::apps {
 
@@ -42,6 +43,8 @@ void chart(const Options& options) {
   study::CapturedRooms rooms(options.threads);
   study::ChartCases cases =
       study::chart_cases(options.studies, options.generated, rooms, options.threads);
+  if (cases.empty())
+    throw ar::InputError("chart: there is nothing to chart: name a study or a scene file");
   study::ChartPart part;
   {
     const auto jobs = study::jobs_of(cases, shard);
@@ -51,8 +54,8 @@ void chart(const Options& options) {
                          [&](std::size_t done) { progress.show(static_cast<std::int64_t>(done)); });
   }
   if (!shard.is_whole()) {
-    std::cout << fmt::format("part {} of {}: {} points of {}\n", shard.number, shard.count,
-                             part.points.size(), part.jobs);
+    std::cout << fmt::format("part {} of {}: {} of {} scenes, {} points\n", shard.number,
+                             shard.count, part.done.size(), part.jobs, part.points.size());
     return;
   }
   study::write_chart(options.out, part);
@@ -81,8 +84,10 @@ void add_chart(CLI::App& program) {
   command->add_option("--threads", options->threads, "Threads (0: all of the machine)")
       ->check(CLI::Range(0, 256));
   command->footer(
-      "Writes chart.html (one file, no network needed), chart.svg, chart.csv, chart.json and "
-      "pictures/.\n"
+      "Writes chart.html (one file, no network needed), chart.csv, chart.json, pictures/ and, "
+      "where\n"
+      "something was timed, chart.svg. --merge takes the parts as they are, whatever else is "
+      "given.\n"
       "Examples:\n"
       "  gnomon chart --out out\n"
       "  gnomon chart examples/study.toml --out out\n"

@@ -47,8 +47,10 @@ study::Sweeps chosen_sweeps(const Options& options) {
   if (options.only.empty()) return all;
   for (const std::string& name : options.only)
     if (std::ranges::none_of(all, [&](const auto& s) { return s->text().name == name; }))
-      throw ar::InputError(
-          fmt::format("--only {}: there is no such sweep (--list names them)", name));
+      throw ar::InputError(fmt::format(
+          "--only {}: there is no such sweep here (--list names them; those of photographs "
+          "need --examples)",
+          name));
   std::erase_if(all, [&](const auto& sweep) {
     return std::ranges::find(options.only, sweep->text().name) == options.only.end();
   });

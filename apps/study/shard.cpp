@@ -19,9 +19,8 @@ Shard parse_shard(const std::string& option, const std::string& text) {
     read = count.ec == std::errc() && count.ptr == end;
   }
   if (!read || shard.number < 1 || shard.number > shard.count || shard.count > kMostShards)
-    throw ar::InputError(
-        fmt::format("{}: '{}' is no part such as 2/8 (1 to {} of at most that many)", option,
-                    ar::one_line(text), kMostShards));
+    throw ar::InputError(fmt::format("{}: '{}' is not I/N with I from 1 to N and N up to {}",
+                                     option, ar::one_line(text), kMostShards));
   return shard;
 }
 

@@ -50,7 +50,7 @@ bool is_study(const fs::path& file) {
 
 Study read_study(const fs::path& file) {
   const toml::table document = ar::load_toml(file, kMaxStudyBytes, kStudyFormat);
-  const ar::TomlTable t(file, document, "the file", {"format", "photograph", "scenes"});
+  const ar::TomlTable t(file, document, "", {"format", "photograph", "scenes"});
   Study study;
   for (const toml::table* table : t.tables("photograph")) {
     study.photographs.push_back(read_photograph(file, *table));

@@ -483,7 +483,9 @@ TEST(SceneFile, TheExamplesOfTheRepositoryAreRead) {
   int count = 0;
   for (const char* folder : {"examples", "tests/data/desk"})
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
-      if (entry.path().extension() != ".toml" || entry.path().filename() == kCaptureName) continue;
+      // The other formats in these folders have readers and tests of their own.
+      const fs::path name = entry.path().filename();
+      if (name.extension() != ".toml" || name == kCaptureName || name == "study.toml") continue;
       const SceneFile scene = read_scene(entry.path());
       EXPECT_EQ(load_models(scene).size(), scene.objects.size()) << entry.path();
       ++count;

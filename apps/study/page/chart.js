@@ -117,7 +117,7 @@
       hoverRadius: 8,
     })).filter((set) => set.data.length);
     sets.push({
-      label: "front", type: "line", data: front(points).map(place), borderColor: "#777", borderWidth: 1.5,
+      label: "front", type: "line", pointStyle: "line", data: front(points).map(place), borderColor: "#777", borderWidth: 1.5,
       borderDash: [5, 4], pointRadius: 0, pointHitRadius: 0, stepped: "before", fill: false,
     });
     if (chart) chart.destroy();
@@ -136,8 +136,8 @@
           x: { type: log ? "logarithmic" : "linear", title: { display: true, text: "milliseconds a frame" } },
           y: {
             type: log ? "logarithmic" : "linear",
-            min: log ? floor : 0,
-            afterBuildTicks: (axis) => { if (log) axis.ticks.unshift({ value: floor }); },
+            min: log ? floor * 0.7 : 0,
+            afterBuildTicks: (axis) => { if (log) axis.ticks = [{ value: floor }, ...axis.ticks.filter((t) => t.value > floor * 2)]; },
             title: { display: true, text: scene().errors[error()] },
             ticks: { callback: (value) => !log || value > floor * 1.001 ? number(value) : value > floor * 0.999 ? "0" : "" },
           },

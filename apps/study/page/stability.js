@@ -11,12 +11,16 @@
     return made;
   };
 
-  /// From white (nothing wrong) through the blues of "cividis", which colour-blind people can read, to
-  /// yellow (all wrong); by the logarithm, since a hundredth of a percent is worth seeing.
-  const stops = [[255, 255, 255], [198, 213, 235], [120, 150, 200], [60, 80, 150], [90, 90, 100], [165, 150, 90], [253, 231, 55]];
+  /// Blues below the share from which a method counts as given up, by the logarithm, since a hundredth
+  /// of a percent is worth seeing; yellow to dark red from there on. Colour-blind people tell them apart.
+  const harmless = [[255, 255, 255], [214, 226, 242], [158, 188, 224], [96, 143, 197]];
+  const givenUp = [[255, 226, 120], [230, 140, 30], [190, 60, 20], [110, 20, 20]];
   const color = (share) => {
-    if (share <= 0) return stops[0];
-    const at = Math.min(Math.max(1 + (Math.log10(share) + 4) / 4 * (stops.length - 2), 0.5), stops.length - 1);
+    if (share <= 0) return harmless[0];
+    const log = Math.log10(share), limit = Math.log10(data.givenUp);
+    const stops = share < data.givenUp ? harmless : givenUp;
+    const part = share < data.givenUp ? (log + 4.5) / (limit + 4.5) : (log - limit) / -limit;
+    const at = Math.min(Math.max(part, share < data.givenUp ? 0.1 : 0), 1) * (stops.length - 1);
     const low = Math.floor(at), high = Math.min(low + 1, stops.length - 1);
     return stops[low].map((c, i) => Math.round(c + (stops[high][i] - c) * (at - low)));
   };
@@ -28,7 +32,7 @@
   const percent = (share) => {
     const value = 100 * share;
     if (value === 0) return "0";
-    if (value < 0.005) return "<.01";
+    if (value < 0.005) return "<0.01";
     return value < 1 ? value.toFixed(2) : value < 10 ? value.toFixed(1) : value.toFixed(0);
   };
 
