@@ -11,6 +11,7 @@
 #include "apps/study/shard.h"
 #include "apps/video_frames.h"
 #include "ar/error.h"
+#include "ar/session_options.h"
 #include "ar/video.h"
 
 namespace gnomon::apps {
@@ -58,10 +59,8 @@ void run_video(const ArArguments& arguments) {
   ar::SessionOptions options = arguments.session;
   options.masks = false;
   const study::Shard shard = study::parse_shard("--shard", arguments.shard);
-  const bool differential = options.differential || (scene.differential && !options.method);
-  const double budget_ms =
-      options.budget_ms.value_or(scene.differential ? scene.differential->settings.budget_ms : 0.0);
-  if (!shard.is_whole() && differential && budget_ms > 0.0 && !options.passes)
+  const auto differential = ar::differential_file(scene, options);
+  if (!shard.is_whole() && differential && differential->settings.budget_ms > 0.0)
     throw ar::InputError("--shard: not with a budget of time, whose frames depend on those before");
   ar::Session session(scene, reader.width(), reader.height(), options);
   for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';

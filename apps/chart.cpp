@@ -11,6 +11,7 @@
 #include "apps/commands.h"
 #include "apps/output_folder.h"
 #include "apps/progress.h"
+#include "apps/shard_arguments.h"
 #include "apps/study/chart.h"
 #include "apps/study/chart_cases.h"
 #include "apps/study/gnuplot.h"
@@ -25,9 +26,9 @@ namespace {
 struct Options {
   std::vector<fs::path> studies;
   fs::path out;
-  std::string shard = "1/1";
-  bool merge = false, generated = true;
-  int frames = 11, threads = 0;
+  bool generated = true;
+  int frames = 11;
+  ShardArguments run;
 };
 
 void say_written(const fs::path& out, const study::ChartPart& whole) {
@@ -36,18 +37,18 @@ void say_written(const fs::path& out, const study::ChartPart& whole) {
 }
 
 void chart(const Options& options) {
-  const study::Shard shard = study::parse_shard("--shard", options.shard);
+  const study::Shard shard = study::parse_shard("--shard", options.run.shard);
   check_folder(options.out);
-  if (options.merge || shard.is_whole()) study::require_gnuplot();
-  if (options.merge) return say_written(options.out, study::merge_chart(options.out));
-  study::CapturedRooms rooms(options.threads);
+  if (options.run.merge || shard.is_whole()) study::require_gnuplot();
+  if (options.run.merge) return say_written(options.out, study::merge_chart(options.out));
+  study::CapturedRooms rooms(options.run.threads);
   study::ChartCases cases =
-      study::chart_cases(options.studies, options.generated, rooms, options.threads);
+      study::chart_cases(options.studies, options.generated, rooms, options.run.threads);
   if (cases.empty())
     throw ar::InputError("chart: there is nothing to chart: name a study or a scene file");
   study::ChartPart part;
   {
-    const auto jobs = study::jobs_of(cases, shard);
+    const auto jobs = shard.share_of(cases.size());
     const Progress progress("scene", static_cast<std::int64_t>(jobs));
     part =
         study::run_chart(std::move(cases), shard, options.frames, options.out,
@@ -78,11 +79,7 @@ void add_chart(CLI::App& program) {
       ->add_option("--frames", options->frames, "Frames a setting that are timed (0: errors only)")
       ->check(CLI::Range(0, 10'000))
       ->capture_default_str();
-  command->add_option("--shard", options->shard,
-                      "Run part I of N of the jobs (I/N), for a scheduler; --merge when all ran");
-  command->add_flag("--merge", options->merge, "Put the parts that lie in the folder together");
-  command->add_option("--threads", options->threads, "Threads (0: all of the machine)")
-      ->check(CLI::Range(0, 256));
+  add_shard(*command, options->run);
   command->footer(
       "Writes chart.html (one file, no network needed), chart.csv, chart.json, pictures/ and, "
       "where\n"

@@ -11,6 +11,7 @@
 #include "apps/commands.h"
 #include "apps/output_folder.h"
 #include "apps/progress.h"
+#include "apps/shard_arguments.h"
 #include "apps/study/generated_sweeps.h"
 #include "apps/study/photograph_sweeps.h"
 #include "apps/study/stability.h"
@@ -25,15 +26,14 @@ namespace {
 struct Options {
   fs::path out, examples = GNOMON_SOURCE_DIR "/examples";
   std::vector<std::string> only;
-  std::string shard = "1/1";
-  bool merge = false, list = false;
-  int threads = 0;
+  bool list = false;
+  ShardArguments run;
 };
 
 study::Sweeps every_sweep(const Options& options) {
-  study::Sweeps sweeps = study::generated_sweeps(options.threads);
+  study::Sweeps sweeps = study::generated_sweeps(options.run.threads);
   if (study::has_photographs(options.examples))
-    study::add_photograph_sweeps(sweeps, options.examples, options.threads);
+    study::add_photograph_sweeps(sweeps, options.examples, options.run.threads);
   else
     std::cerr << fmt::format(
         "gnomon: note: --examples {}: no desk/ and soft/ with photographs, so "
@@ -71,15 +71,16 @@ void say_written(const fs::path& out, const study::StabilityPart& whole) {
 }
 
 void stability(const Options& options) {
-  const study::Shard shard = study::parse_shard("--shard", options.shard);
+  const study::Shard shard = study::parse_shard("--shard", options.run.shard);
   if (options.list) return list(every_sweep(options));
   if (options.out.empty()) throw ar::InputError("--out: missing: where do the results go?");
   check_folder(options.out);
-  if (options.merge) return say_written(options.out, study::merge_stability(options.out));
+  if (options.run.merge) return say_written(options.out, study::merge_stability(options.out));
   const study::Sweeps sweeps = chosen_sweeps(options);
   study::StabilityPart part;
   {
-    const Progress progress("value", static_cast<std::int64_t>(study::jobs_of(sweeps, shard)));
+    const Progress progress("value",
+                            static_cast<std::int64_t>(shard.share_of(study::jobs_of(sweeps))));
     part = study::run_stability(sweeps, shard, options.out, [&](std::size_t done) {
       progress.show(static_cast<std::int64_t>(done));
     });
@@ -104,11 +105,7 @@ void add_stability(CLI::App& program) {
   command->add_option("--examples", options->examples,
                       "Folder with desk/ and soft/, whose photographs some sweeps need");
   command->add_flag("--list", options->list, "Name the sweeps, and do nothing else");
-  command->add_option("--shard", options->shard,
-                      "Run part I of N of the jobs (I/N), for a scheduler; --merge when all ran");
-  command->add_flag("--merge", options->merge, "Put the parts that lie in the folder together");
-  command->add_option("--threads", options->threads, "Threads (0: all of the machine)")
-      ->check(CLI::Range(0, 256));
+  add_shard(*command, options->run);
   command->footer(
       "Writes stability.html (one file, no network needed), stability.csv and stability.json; the\n"
       "same bytes for every number of threads.\n"

@@ -62,9 +62,7 @@ VideoFrames::VideoFrames(const fs::path& out, const ar::VideoReader& reader, std
     writer_.emplace(video_file(out), shape_.width, shape_.height, shape_.frames_per_second);
   else
     make_folder(out / "frames");
-  // What an earlier run left there speaks of other frames.
-  std::error_code ignored;
-  fs::remove(study::part_file(out, kParts, shard), ignored);
+  study::begin_part(out, kParts, shard);
 }
 
 void VideoFrames::write(std::size_t frame, const ar::Image& picture) {

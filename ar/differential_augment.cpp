@@ -24,15 +24,14 @@ std::vector<std::uint32_t> all_patches(const pipeline::LitScene& scene) {
   return all;
 }
 
-pipeline::Scene virtual_ones(const pipeline::Scene& scene) {
-  pipeline::Scene out = scene;
-  std::erase_if(out.objects, [](const pipeline::Object& object) {
+}  // namespace
+
+pipeline::Scene virtual_ones(pipeline::Scene scene) {
+  std::erase_if(scene.objects, [](const pipeline::Object& object) {
     return object.role != pipeline::Role::virtual_object;
   });
-  return out;
+  return scene;
 }
-
-}  // namespace
 
 std::vector<std::uint32_t> visible_patches(const pipeline::LitScene& scene,
                                            const pipeline::Camera& camera) {

@@ -68,6 +68,9 @@ class DifferentialAugmenter {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The scene with its virtual objects alone.
+pipeline::Scene virtual_ones(pipeline::Scene scene);
+
 /// Patches that a grid of rays through the view meets from their front, every few pixels, and the
 /// neighbours that share a vertex with them; ascending.
 std::vector<std::uint32_t> visible_patches(const pipeline::LitScene& scene,

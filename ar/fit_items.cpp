@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "ar/fit_settings.h"
+#include "pipeline/bounds.h"
 #include "pipeline/mesh_simplify.h"
 #include "pipeline/reduced_occluder.h"
 
@@ -26,14 +27,10 @@ constexpr std::size_t kFewestTriangles = 4;
 constexpr double kDisplace = 2.0;
 
 double diagonal_of(const pipeline::Model& model) {
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-  for (const pipeline::Part& part : model.parts) {
-    for (const glm::vec4& p : part.mesh.positions) {
-      low = glm::min(low, glm::dvec3(p));
-      high = glm::max(high, glm::dvec3(p));
-    }
-  }
-  return low.x <= high.x ? glm::length(high - low) : 0.0;
+  pipeline::Bounds bounds;
+  for (const pipeline::Part& part : model.parts)
+    for (const glm::vec4& p : part.mesh.positions) bounds.add(glm::dvec3(p));
+  return bounds.empty() ? 0.0 : glm::length(bounds.high - bounds.low);
 }
 
 /// Keeps the given place in mind while options before it come and go.

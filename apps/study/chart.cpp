@@ -4,7 +4,6 @@
 #include <iterator>
 #include <numeric>
 #include <stdexcept>
-#include <system_error>
 
 #include "apps/output_folder.h"
 #include "apps/study/chart_page.h"
@@ -71,17 +70,10 @@ void run_named_job(ChartCase& one, std::size_t job, int frames, const fs::path& 
 
 }  // namespace
 
-std::size_t jobs_of(const ChartCases& cases, const Shard& shard) {
-  return cases.size() / shard.count + (cases.size() % shard.count >= shard.number ? 1 : 0);
-}
-
 ChartPart run_chart(ChartCases cases, const Shard& shard, int frames, const fs::path& out,
                     const std::function<void(std::size_t)>& progress) {
   make_folder(out / kPictures);
-  const fs::path file = part_file(out, kChartName, shard);
-  // What an earlier run left there speaks of other pictures.
-  std::error_code ignored;
-  fs::remove(file, ignored);
+  const fs::path file = begin_part(out, kChartName, shard);
   ChartPart part{.shard = shard, .jobs = cases.size(), .frames = frames};
   for (const auto& one : cases) part.scenes.push_back(one->name());
   for (std::size_t job = 0; job < cases.size(); ++job) {

@@ -23,9 +23,6 @@ ChartPart run_chart(ChartCases cases, const Shard& shard, int frames,
                     const std::filesystem::path& out,
                     const std::function<void(std::size_t)>& progress);
 
-/// Jobs of the shard.
-std::size_t jobs_of(const ChartCases& cases, const Shard& shard);
-
 /// Writes OUT/chart.csv, chart.html and, where something was timed, chart.svg, of all jobs' points.
 /// Throws ar::InputError.
 void write_chart(const std::filesystem::path& out, const ChartPart& whole);

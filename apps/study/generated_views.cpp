@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
+#include "apps/study/sweep_views.h"
 #include "pipeline/shapes.h"
 
 namespace gnomon::apps::study {
@@ -18,13 +19,6 @@ namespace {
 
 using ModelPointer = std::shared_ptr<const Model>;
 
-Scene ground(float half, const glm::vec4& light) {
-  Scene scene;
-  scene.objects.push_back({.name = "ground", .model = model_of(square_mesh(half)), .casts = false});
-  scene.lights.push_back({.name = "light", .position = light});
-  return scene;
-}
-
 void add(Scene& scene, const char* name, ModelPointer model, const glm::mat4& place) {
   scene.objects.push_back({.name = name + (" " + std::to_string(scene.objects.size())),
                            .model = std::move(model),
@@ -32,7 +26,7 @@ void add(Scene& scene, const char* name, ModelPointer model, const glm::mat4& pl
 }
 
 View closed_bodies(int width, int height) {
-  Scene scene = ground(4.0f, {1.5f, 4.0f, 1.0f, 1.0f});
+  Scene scene = ground_under({1.5f, 4.0f, 1.0f, 1.0f}, 4.0f);
   add(scene, "torus", model_of(torus_mesh(0.6f, 0.22f, 64, 32)),
       placed({-0.9f, 0.9f, 0.2f}, {1.0f, 0.0f, 0.3f}, 0.9f));
   add(scene, "ball", model_of(icosphere_mesh(0.45f, 4)), placed({0.6f, 0.7f, -0.3f}));
@@ -45,7 +39,7 @@ View closed_bodies(int width, int height) {
 }
 
 View many_casters(int width, int height) {
-  Scene scene = ground(5.0f, {0.5f, 5.0f, 0.8f, 1.0f});
+  Scene scene = ground_under({0.5f, 5.0f, 0.8f, 1.0f}, 5.0f);
   const ModelPointer torus = model_of(torus_mesh(0.25f, 0.09f, 32, 16));
   for (int i = 0; i < 40; ++i) {
     // A sunflower's spiral.
@@ -60,7 +54,7 @@ View many_casters(int width, int height) {
 }
 
 View thin_things(int width, int height) {
-  Scene scene = ground(6.0f, glm::vec4(glm::normalize(glm::vec3(1.0f, 0.22f, 0.35f)), 0.0f));
+  Scene scene = ground_under(glm::vec4(glm::normalize(glm::vec3(1.0f, 0.22f, 0.35f)), 0.0f), 6.0f);
   const ModelPointer picket = model_of(flat_box_mesh({0.03f, 0.5f, 0.012f}));
   for (int i = 0; i < 24; ++i)
     add(scene, "picket", picket, placed({0.6f, 0.5f, -1.9f + 0.16f * static_cast<float>(i)}));
@@ -72,7 +66,7 @@ View thin_things(int width, int height) {
 }
 
 View open_meshes(int width, int height) {
-  Scene scene = ground(4.0f, {0.6f, 4.5f, 0.4f, 1.0f});
+  Scene scene = ground_under({0.6f, 4.5f, 0.4f, 1.0f}, 4.0f);
   const ModelPointer leaf = model_of(square_mesh(0.3f));
   for (int i = 0; i < 9; ++i) {
     const float turn = 0.7f * static_cast<float>(i);
@@ -92,7 +86,7 @@ View open_meshes(int width, int height) {
 }
 
 View eye_in_shadow(int width, int height) {
-  Scene scene = ground(4.0f, {0.1f, 4.0f, 0.2f, 1.0f});
+  Scene scene = ground_under({0.1f, 4.0f, 0.2f, 1.0f}, 4.0f);
   add(scene, "roof", model_of(flat_box_mesh({0.6f, 0.1f, 0.6f})), placed({0.0f, 1.6f, 0.0f}));
   add(scene, "ball", model_of(icosphere_mesh(0.3f, 4)), placed({0.3f, 0.3f, -1.2f}));
   add(scene, "torus", model_of(torus_mesh(0.35f, 0.12f, 48, 24)),
@@ -102,7 +96,7 @@ View eye_in_shadow(int width, int height) {
 }
 
 View lamp_among_things(int width, int height) {
-  Scene scene = ground(4.0f, {0.0f, 0.7f, 0.0f, 1.0f});
+  Scene scene = ground_under({0.0f, 0.7f, 0.0f, 1.0f}, 4.0f);
   const ModelPointer pillar = model_of(flat_box_mesh({0.12f, 0.6f, 0.12f}));
   for (int i = 0; i < 7; ++i) {
     const float angle = glm::two_pi<float>() * static_cast<float>(i) / 7.0f;
@@ -115,7 +109,7 @@ View lamp_among_things(int width, int height) {
 }
 
 View wide_field(int width, int height) {
-  Scene scene = ground(60.0f, glm::vec4(glm::normalize(glm::vec3(0.4f, 1.0f, 0.25f)), 0.0f));
+  Scene scene = ground_under(glm::vec4(glm::normalize(glm::vec3(0.4f, 1.0f, 0.25f)), 0.0f), 60.0f);
   const ModelPointer post = model_of(flat_box_mesh({0.06f, 0.5f, 0.06f}));
   const ModelPointer ball = model_of(icosphere_mesh(0.3f, 3));
   for (int i = 0; i < 60; ++i) {

@@ -42,6 +42,13 @@ fs::path part_file(const fs::path& folder, std::string_view name, const Shard& s
   return folder / fmt::format("{}-{}-of-{}.json", name, shard.number, shard.count);
 }
 
+fs::path begin_part(const fs::path& folder, std::string_view name, const Shard& shard) {
+  fs::path file = part_file(folder, name, shard);
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  return file;
+}
+
 std::vector<fs::path> find_parts(const fs::path& folder, std::string_view name) {
   std::map<std::size_t, fs::path> found;
   std::optional<std::size_t> count;

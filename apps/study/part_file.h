@@ -19,6 +19,11 @@ namespace gnomon::apps::study {
 std::filesystem::path part_file(const std::filesystem::path& folder, std::string_view name,
                                 const Shard& shard);
 
+/// Where a part that begins now is to be written when it is done. Takes away what an earlier run
+/// left there, which speaks of other results.
+std::filesystem::path begin_part(const std::filesystem::path& folder, std::string_view name,
+                                 const Shard& shard);
+
 /// The parts of a run that lie in the folder, in order, without a whole run's file. Throws
 /// ar::InputError when there is none, one is missing, or parts of differently many lie there.
 std::vector<std::filesystem::path> find_parts(const std::filesystem::path& folder,

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "apps/study/bounding_box.h"
 #include "apps/study/difference_picture.h"
@@ -31,7 +30,6 @@ struct PhotographCase::Shared {
   RayMasks rays;
   /// Where the true photograph shows a shadow or an object.
   ar::Image region;
-  int threads;
 };
 
 namespace {
@@ -203,8 +201,8 @@ std::vector<std::unique_ptr<Contender>> PhotographCase::contenders() {
       throw ar::InputError(photograph_.name + ": shadow_mask: no pixel is in it");
     RayMasks rays = ray_masks(at.scene, at.lens, at.world_from_camera, threads_);
     ar::Image region = united(*at.shadow_mask, at.object_mask);
-    shared_ = std::make_unique<Shared>(
-        Shared{name(), std::move(at), std::move(rays), std::move(region), threads_});
+    shared_ =
+        std::make_unique<Shared>(Shared{name(), std::move(at), std::move(rays), std::move(region)});
   }
   std::vector<std::unique_ptr<Contender>> out;
   for (Setting& setting : settings_for(shared_->at.file, threads_))

@@ -144,13 +144,6 @@ ar::Image shadow_region(const Shared& shared, const pipeline::ReferencePicture& 
   return region;
 }
 
-pipeline::Scene virtual_objects(pipeline::Scene scene) {
-  std::erase_if(scene.objects, [](const pipeline::Object& object) {
-    return object.role != pipeline::Role::virtual_object;
-  });
-  return scene;
-}
-
 }  // namespace
 
 RoomCase::RoomCase(StudyPhotograph photograph, CapturedRooms& rooms, int threads)
@@ -162,7 +155,7 @@ std::vector<std::unique_ptr<Contender>> RoomCase::contenders() {
     PlacedPhotograph at = place(photograph_, threads_);
     CapturedRoom& room = rooms_.room(photograph_.capture);
     std::vector<pipeline::Ray> rays = lens_rays(at.lens, at.world_from_camera);
-    const pipeline::Scene scene = virtual_objects(at.scene);
+    const pipeline::Scene scene = ar::virtual_ones(at.scene);
     shared_.reset(new Shared{
         name(), std::move(at), room, {*room.light(), scene}, std::move(rays), {}, {}, threads_});
     const pipeline::ReferencePicture cast = shared_->cast(kSamples);

@@ -14,6 +14,10 @@ struct Shard {
   std::size_t number = 1, count = 1;
 
   bool has(std::size_t job) const { return job % count == number - 1; }
+  /// How many of so many jobs it has.
+  std::size_t share_of(std::size_t jobs) const {
+    return jobs / count + (jobs % count >= number ? 1 : 0);
+  }
   bool is_whole() const { return count == 1; }
   bool operator==(const Shard&) const = default;
 };

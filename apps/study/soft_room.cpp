@@ -28,8 +28,6 @@ namespace {
 constexpr const char* kSceneFiles[] = {"box.toml", "suzanne.toml"};
 /// A second place, metres from the file's, on the floor's free part.
 constexpr glm::vec3 kMoved{-0.25f, 0.0f, 0.2f};
-/// As ar::DifferentialSettings.
-constexpr std::size_t kOccluderTriangles = 500;
 
 using pipeline::ShadowPrecision;
 
@@ -80,7 +78,7 @@ struct SoftRoom::Impl {
   };
   std::map<double, Light> lights;
   std::array<pipeline::Scene, kScenes> scenes;
-  pipeline::ReducedOccluders occluders{kOccluderTriangles};
+  pipeline::ReducedOccluders occluders{ar::DifferentialSettings{}.occluder_triangles};
   std::map<std::size_t, std::vector<std::size_t>> regions;
 
   void load() {

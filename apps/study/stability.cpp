@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <string>
-#include <system_error>
 
 #include "apps/output_folder.h"
 #include "apps/study/part_file.h"
@@ -36,19 +35,17 @@ StabilityColumn run_job(Sweep& sweep, std::size_t value) {
 
 }  // namespace
 
-std::size_t jobs_of(const Sweeps& sweeps, const Shard& shard) {
+std::size_t jobs_of(const Sweeps& sweeps) {
   std::size_t jobs = 0;
   for (const auto& sweep : sweeps) jobs += sweep->values().size();
-  return jobs / shard.count + (jobs % shard.count >= shard.number ? 1 : 0);
+  return jobs;
 }
 
 StabilityPart run_stability(const Sweeps& sweeps, const Shard& shard, const fs::path& out,
                             const std::function<void(std::size_t)>& progress) {
   make_folder(out);
-  const fs::path file = part_file(out, kStabilityName, shard);
-  std::error_code ignored;
-  fs::remove(file, ignored);
-  StabilityPart part{.shard = shard, .jobs = jobs_of(sweeps, {})};
+  const fs::path file = begin_part(out, kStabilityName, shard);
+  StabilityPart part{.shard = shard, .jobs = jobs_of(sweeps)};
   std::size_t job = 0;
   for (std::size_t number = 0; number < sweeps.size(); ++number) {
     Sweep& sweep = *sweeps[number];

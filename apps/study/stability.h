@@ -18,8 +18,8 @@ inline constexpr std::string_view kStabilityName = "stability";
 
 using Sweeps = std::vector<std::unique_ptr<Sweep>>;
 
-/// Jobs of the shard.
-std::size_t jobs_of(const Sweeps& sweeps, const Shard& shard);
+/// One a value of each sweep.
+std::size_t jobs_of(const Sweeps& sweeps);
 
 /// Runs the shard's jobs and writes its part file to OUT. `progress` is told how many are done.
 /// Throws ar::InputError.
