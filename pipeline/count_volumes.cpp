@@ -25,6 +25,7 @@ raster::Draw counting_draw(const PlacedVolume& volume, const CountOptions& optio
   const bool front_cap =
       !options.casters_drawn || !volume.cap_is_drawn || volume.method != VolumeMethod::zpass;
   draw.mesh = front_cap ? volume.volume->view() : volume.volume->view_without_front_cap();
+  draw.parts = volume.volume->parts(front_cap);
   draw.clip_from_model = volume.clip_from_model;
   draw.label = "volume of " + volume.caster->name;
   if (!options.light_name.empty()) draw.label += " from " + options.light_name;

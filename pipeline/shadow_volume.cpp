@@ -17,6 +17,20 @@ raster::MeshView ShadowVolume::view_without_front_cap() const {
           std::span(indices).subspan(front_cap_indices)};
 }
 
+std::vector<raster::MeshPart> ShadowVolume::parts(bool front_cap) const {
+  std::vector<raster::MeshPart> out;
+  if (shared_indices) return out;
+  std::uint32_t begin = 0;
+  const auto add = [&](const char* label, std::size_t count) {
+    if (count > 0) out.push_back({label, begin});
+    begin += static_cast<std::uint32_t>(count);
+  };
+  if (front_cap) add("front cap", front_cap_indices);
+  add("sides", side_indices);
+  add("back cap", indices.size() - front_cap_indices - side_indices);
+  return out;
+}
+
 /// Collects a volume's triangles; `far_of` gives a vertex's swept position.
 template <class FarOf>
 class VolumeBuilder::Assembler {

@@ -44,6 +44,10 @@ struct ShadowVolume {
   raster::MeshView view() const { return {positions, shared_indices ? *shared_indices : indices}; }
   /// The sides and the back cap, if there is one; of a volume that shares indices, all.
   raster::MeshView view_without_front_cap() const;
+  /// The names of the view's triangles: "front cap", "sides", "back cap", as far as they are there
+  /// and apart. Of the sides each quad's first triangle begins with its silhouette edge, and a quad
+  /// whose far corners are one point has no second triangle.
+  std::vector<raster::MeshPart> parts(bool front_cap) const;
   bool empty() const { return view().indices.empty(); }
 };
 

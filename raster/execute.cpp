@@ -16,6 +16,7 @@
 #include "raster/draw_tile.h"
 #include "raster/executor.h"
 #include "raster/lit_vertices.h"
+#include "raster/looked_up.h"
 #include "raster/lookup_bounds.h"
 #include "raster/tile.h"
 
@@ -197,19 +198,6 @@ void run_tile(const Memory& memory, const Kernels& kernels, std::size_t tile, co
 std::size_t triangles_of(const Command& command) {
   const Draw* draw = std::get_if<Draw>(&command);
   return draw ? draw->mesh.indices.size() / 3 : 0;
-}
-
-/// Calls body(map) for each depth buffer that a command looks up.
-template <class Body>
-void for_each_map(const Command& command, Body body) {
-  const Draw* draw = std::get_if<Draw>(&command);
-  if (!draw) return;
-  if (const Flat* flat = std::get_if<Flat>(&draw->shading)) {
-    if (flat->depth_lookup) body(flat->depth_lookup->map);
-    return;
-  }
-  for (const Light& light : std::get<Lit>(draw->shading).lights)
-    if (light.shadow_map) body(light.shadow_map->map);
 }
 
 /// A tile may run ahead of others inside a group, so a group neither draws into a depth buffer that

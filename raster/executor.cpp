@@ -4,8 +4,6 @@
 #include <array>
 #include <atomic>
 #include <exception>
-#include <mutex>
-#include <thread>
 
 #include "raster/check.h"
 
@@ -54,7 +52,7 @@ class Run {
       // What the others still have in hand is at most one piece each.
       while (progress.finished.load(std::memory_order_acquire) < phases_[p].count) {
         if (failed_.load(std::memory_order_acquire)) return;
-        std::this_thread::yield();
+        yield_thread();
       }
     }
   }
@@ -70,9 +68,11 @@ class Run {
       try {
         phase.run(i);
       } catch (...) {
-        const std::lock_guard lock(failure_lock_);
-        if (!failure_) failure_ = std::current_exception();
-        failed_.store(true, std::memory_order_release);
+        // The first one is kept; whoever started the run looks at it when all have returned.
+        if (!failing_.exchange(true)) {
+          failure_ = std::current_exception();
+          failed_.store(true, std::memory_order_release);
+        }
         return;
       }
       finished.fetch_add(1, std::memory_order_acq_rel);
@@ -82,9 +82,8 @@ class Run {
   std::span<const Phase> phases_;
   const std::size_t share_count_;
   std::array<Progress, kMostPhases> progress_;
-  std::atomic<bool> failed_{false};
+  std::atomic<bool> failing_{false}, failed_{false};
   std::exception_ptr failure_;
-  std::mutex failure_lock_;
 };
 
 }  // namespace

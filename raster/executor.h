@@ -37,5 +37,7 @@ int machine_threads();
 /// count is positive; worker does not throw and is right however many of its calls are made, and
 /// with whatever numbers.
 void run_on_threads(int count, const std::function<void(int number)>& worker);
+/// Lets others run that the calling thread waits for.
+void yield_thread();
 
 }  // namespace gnomon::raster

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <thread>
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -61,5 +62,7 @@ void run_on_threads(int count, const std::function<void(int number)>& worker) {
   });
   join.acquire();
 }
+
+void yield_thread() { std::this_thread::yield(); }
 
 }  // namespace gnomon::raster

@@ -23,4 +23,6 @@ void run_on_threads(int count, const std::function<void(int number)>& worker) {
   worker(0);
 }
 
+void yield_thread() { std::this_thread::yield(); }
+
 }  // namespace gnomon::raster

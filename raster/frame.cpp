@@ -72,6 +72,16 @@ void require_mesh(const MeshView& mesh) {
   require(mesh.indices.empty() || largest < count, "an index lies below the number of positions");
 }
 
+void require_parts(const Draw& draw) {
+  std::uint32_t least = 0;
+  for (const MeshPart& part : draw.parts) {
+    require(part.first_index % 3 == 0 && part.first_index >= least &&
+                part.first_index <= draw.mesh.indices.size(),
+            "the parts of a mesh begin at triangles of it, in order");
+    least = part.first_index;
+  }
+}
+
 void require_viewport(const std::optional<Rect>& viewport) {
   if (!viewport) return;
   const auto fits = [](int v) { return v >= -kMaxTargetSize && v <= kMaxTargetSize; };
@@ -114,6 +124,7 @@ void Frame::clear(const Clear& clear) {
 void Frame::draw(Draw draw) {
   Pass& pass = current();
   require_mesh(draw.mesh);
+  require_parts(draw);
   require_viewport(draw.state.viewport);
   const DepthRange& range = draw.state.depth_range;
   require(range.near >= 0.0f && range.near <= 1.0f && range.far >= 0.0f && range.far <= 1.0f,

@@ -67,8 +67,9 @@ struct Draw {
   glm::mat4 clip_from_model{1.0f};
   Shading shading = Flat{};
   StencilRef stencil_ref;
-  /// For people: what is drawn.
+  /// For people: what is drawn, and the names of runs of the mesh's triangles, in order.
   std::string label = {};
+  std::vector<MeshPart> parts = {};
 };
 
 using Command = std::variant<Clear, Draw, Blit>;
@@ -85,7 +86,8 @@ class Frame {
   void begin_pass(std::string_view label, const Targets& targets);
 
   /// Records a command. Misuse: no pass was begun; a clear or blit of a target that the pass lacks;
-  /// a draw whose attribute arrays or indices do not fit its positions; lighting without normals,
+  /// a draw whose attribute arrays or indices do not fit its positions, or whose parts begin out of
+  /// order, inside a triangle or beyond the indices; lighting without normals,
   /// or at vertices with a shadow map; a lookup of the depth buffer that the draw goes to.
   void clear(const Clear& clear);
   void draw(Draw draw);

@@ -54,6 +54,7 @@ class Decoder {
   void byte(std::string_view what, std::uint8_t& value) { value = in_.u8(what); }
   void flag(std::string_view what, bool& value) { value = number(what, 2) != 0; }
   void integer(std::string_view what, int& value) { value = static_cast<int>(in_.u32(what)); }
+  void word(std::string_view what, std::uint32_t& value) { value = in_.u32(what); }
   void real(std::string_view what, float& value) { value = in_.f32(what); }
   template <class E>
   void choice(std::string_view what, E& value, E last) {
@@ -179,7 +180,7 @@ class Decoder {
     const std::size_t at = in_.offset();
     const std::uint32_t version = in_.u32("the version");
     if (version < 1 || version > kFrameVersion)
-      in_.fail(at, "the version is " + std::to_string(version) + "; versions 1 and 2 can be read");
+      in_.fail(at, "the version is " + std::to_string(version) + "; versions 1 to 3 can be read");
     version_ = version;
   }
 

@@ -104,6 +104,7 @@ class Encoder {
   void byte(std::string_view, std::uint8_t value) { body_.u8(value); }
   void flag(std::string_view, bool value) { body_.u8(value); }
   void integer(std::string_view, int value) { body_.u32(static_cast<std::uint32_t>(value)); }
+  void word(std::string_view, std::uint32_t value) { body_.u32(value); }
   void real(std::string_view, float value) { body_.f32(value); }
   template <class E>
   void choice(std::string_view, E value, E) {
@@ -183,17 +184,20 @@ class Encoder {
   Table arrays_, textures_, pictures_;
 };
 
-bool lights_at_vertices(const Command& command) {
+std::uint32_t version_of(const Command& command) {
   const Draw* draw = std::get_if<Draw>(&command);
-  const Lit* lit = draw ? std::get_if<Lit>(&draw->shading) : nullptr;
-  return lit && lit->at_vertices;
+  if (!draw) return 1;
+  if (!draw->parts.empty()) return 3;
+  const Lit* lit = std::get_if<Lit>(&draw->shading);
+  return lit && lit->at_vertices ? 2 : 1;
 }
 
 /// The oldest version that has all fields of the frame: what older readers can read stays theirs.
 std::uint32_t version_of(const Frame& frame) {
+  std::uint32_t version = 1;
   for (const Pass& pass : frame.passes())
-    if (std::any_of(pass.commands.begin(), pass.commands.end(), lights_at_vertices)) return 2;
-  return 1;
+    for (const Command& command : pass.commands) version = std::max(version, version_of(command));
+  return version;
 }
 
 }  // namespace

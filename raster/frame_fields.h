@@ -154,6 +154,12 @@ void fields(Io& io, MeshView& mesh) {
 }
 
 template <class Io>
+void fields(Io& io, MeshPart& part) {
+  io.text("a part's label", part.label);
+  io.word("a part's first index", part.first_index);
+}
+
+template <class Io>
 void fields(Io& io, Clear& clear) {
   io.optional("a clear colour", clear.color);
   io.optional("a clear depth", clear.depth);
@@ -169,6 +175,7 @@ void fields(Io& io, Draw& draw) {
   io.text("a draw's label", draw.label);
   fields(io, draw.state);
   fields(io, draw.mesh);
+  if (io.version() >= 3) io.list("the parts", draw.parts);
   io.floats("a clip matrix", draw.clip_from_model);
   io.integer("a front stencil reference", draw.stencil_ref.front);
   io.integer("a back stencil reference", draw.stencil_ref.back);

@@ -1,4 +1,4 @@
-// A recorded frame as bytes and back: the format "gnomon frame", versions 1 and 2
+// A recorded frame as bytes and back: the format "gnomon frame", versions 1 to 3
 // (docs/frame-format.md).
 // Invariant: the bytes are a function of the frame's values alone, of no address and no machine;
 // what encode_frame wrote comes back from decode_frame to be encoded to the very same bytes (of

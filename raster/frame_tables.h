@@ -7,8 +7,9 @@
 namespace gnomon::raster {
 
 inline constexpr std::string_view kFrameMagic = "gnomon frame";
-/// The newest version. Version 2 has Lit::at_vertices, which is false in version 1.
-inline constexpr std::uint32_t kFrameVersion = 2;
+/// The newest version. Version 2 has Lit::at_vertices, which is false in version 1; version 3 has
+/// Draw::parts, of which older ones have none.
+inline constexpr std::uint32_t kFrameVersion = 3;
 /// In an index's place: nothing is meant.
 inline constexpr std::uint32_t kNone = 0xffffffff;
 

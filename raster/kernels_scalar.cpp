@@ -6,6 +6,7 @@
 
 #include "raster/blend.h"
 #include "raster/check.h"
+#include "raster/stencil_op.h"
 #include "raster/tiled_plane.h"
 #include "raster/unorm.h"
 
@@ -49,29 +50,6 @@ PixelMask compare_mask(CompareFunc func, Left left, Right right) {
   return 0;
 }
 
-/// The stencil value after op, before the write mask.
-std::uint8_t apply(StencilOp op, std::uint8_t value, std::uint8_t ref) {
-  switch (op) {
-    case StencilOp::keep:
-      return value;
-    case StencilOp::zero:
-      return 0;
-    case StencilOp::replace:
-      return ref;
-    case StencilOp::incr:
-      return value == 255 ? value : static_cast<std::uint8_t>(value + 1);
-    case StencilOp::incr_wrap:
-      return static_cast<std::uint8_t>(value + 1);
-    case StencilOp::decr:
-      return value == 0 ? value : static_cast<std::uint8_t>(value - 1);
-    case StencilOp::decr_wrap:
-      return static_cast<std::uint8_t>(value - 1);
-    case StencilOp::invert:
-      return static_cast<std::uint8_t>(~value);
-  }
-  return value;
-}
-
 /// The 64 depths of block b.
 void depth_values(const TileDepth& plane, std::size_t b, std::uint32_t (&out)[kPixelsPerBlock]) {
   const std::uint64_t base = plane.base + static_cast<std::uint64_t>(block_x(b)) * plane.step_x +
@@ -96,11 +74,8 @@ void depth_values(const TileDepth& plane, std::size_t b, std::uint32_t (&out)[kP
 void update_stencil(StencilOp op, PixelMask mask, std::uint8_t ref, std::uint8_t write_mask,
                     std::uint8_t* stencil) {
   if (op == StencilOp::keep || write_mask == 0) return;
-  for_each_pixel(mask, [&](std::size_t i) {
-    const std::uint8_t old = stencil[i];
-    stencil[i] =
-        static_cast<std::uint8_t>((old & ~write_mask) | (apply(op, old, ref) & write_mask));
-  });
+  for_each_pixel(
+      mask, [&](std::size_t i) { stencil[i] = stencil_after(op, stencil[i], ref, write_mask); });
 }
 
 /// Of 8x8 samples those where value + x * step_x + y * step_y is negative.

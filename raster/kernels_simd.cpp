@@ -15,7 +15,8 @@
 #include <hwy/highway.h>
 
 // A machine without vectors has the kernels in plain C++.
-#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+// WebAssembly's vectors want doubles, which Highway 1.0 has not got for them.
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_WASM
 
 #include "raster/blend_block-inl.h"
 #include "raster/count_blocks-inl.h"
@@ -50,6 +51,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace gnomon::raster {
 
+#if HWY_ARCH_WASM
+const Kernels* simd_kernels(Isa) { return nullptr; }
+#else
 const Kernels* simd_kernels(Isa isa) {
   static const std::int64_t machine = hwy::SupportedTargets();
   [[maybe_unused]] const auto if_machine_has = [](std::int64_t target, const Kernels* kernels) {
@@ -84,6 +88,7 @@ const Kernels* simd_kernels(Isa isa) {
       return nullptr;
   }
 }
+#endif
 
 }  // namespace gnomon::raster
 #endif  // HWY_ONCE

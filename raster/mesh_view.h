@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -19,6 +20,14 @@ struct MeshView {
   std::span<const glm::vec3> normals = {};
   std::span<const glm::vec4> colors = {};
   std::span<const glm::vec2> texcoords = {};
+};
+
+/// A run of a mesh's triangles that has a name, for people: it changes nothing that is drawn.
+struct MeshPart {
+  std::string label;
+  /// Where it begins among the indices; it ends where the next one begins.
+  std::uint32_t first_index = 0;
+  bool operator==(const MeshPart&) const = default;
 };
 
 }  // namespace gnomon::raster

@@ -71,6 +71,7 @@ void record_lookups(Frame& frame, Random& r, const Targets& targets, const Depth
     draw.mesh = {mesh->positions, mesh->indices, mesh->normals};
     draw.clip_from_model[3] = {r.real(-0.5f, 0.5f), r.real(-0.5f, 0.5f), 0.0f, 1.0f};
     draw.label = "draw " + std::to_string(i);
+    if (r.chance(0.5f)) draw.parts = {{"none", 0}, {"all", 0}, {"beyond", 3}};
     if (r.chance(0.5f)) {
       Flat flat;
       flat.depth_lookup = random_lookup(r, map);
@@ -239,6 +240,29 @@ TEST(FrameFormat, OnlyAFrameThatIsLitAtVerticesIsVersion2) {  // oracle: docs/fr
   EXPECT_EQ(encode_frame(decode_frame(flagless).frame), old);
 }
 
+TEST(FrameFormat, OnlyAFrameWhoseMeshesHavePartsIsVersion3) {  // oracle: docs/frame-format.md
+  RecordedFrame recording = tiny_recording();
+  const Bytes old = encode_frame(recording.frame);
+  auto draw = std::get<Draw>(recording.frame.passes()[0].commands[1]);
+  draw.parts = {{"cap", 0}, {"rest", 3}};
+  Frame frame;
+  frame.begin_pass("p", recording.frame.passes()[0].targets);
+  frame.clear(std::get<Clear>(recording.frame.passes()[0].commands[0]));
+  frame.draw(draw);
+  const Bytes now = encode_frame(frame);
+  EXPECT_EQ(old.at(12), 1);
+  EXPECT_EQ(now.at(12), 3);
+  // A list of two texts with an index each; two_sided lighting's flag is of lit draws alone.
+  EXPECT_EQ(now.size(), old.size() + 4 + (4 + 3 + 4) + (4 + 4 + 4));
+  const RecordedFrame got = decode_frame(now);
+  EXPECT_EQ(std::get<Draw>(got.frame.passes()[0].commands[1]).parts, draw.parts);
+  for (const std::vector<MeshPart>& wrong :
+       {std::vector<MeshPart>{{"a", 1}}, {{"a", 6}}, {{"a", 3}, {"b", 0}}}) {
+    draw.parts = wrong;
+    EXPECT_THROW(frame.draw(draw), std::invalid_argument);
+  }
+}
+
 TEST(FrameFormat,
      AnIndexBeyond16BitsWidensItsArray) {  // oracle: sizes, and the frame that was read
   const auto bytes_with = [](std::uint32_t last) {
@@ -345,7 +369,7 @@ TEST(FrameFormat, AnErrorSaysWhereAndWhatAndTheValue) {
   };
   EXPECT_EQ(error_of({}), "byte 0: the format's name takes 12 bytes, but 0 are left");
   EXPECT_EQ(with(3, 'x'), "byte 0: this does not begin with \"gnomon frame\"");
-  EXPECT_EQ(with(12, 9), "byte 12: the version is 9; versions 1 and 2 can be read");
+  EXPECT_EQ(with(12, 9), "byte 12: the version is 9; versions 1 to 3 can be read");
   EXPECT_EQ(with(20, 3), "byte 20: a buffer's kind is 3, more than 2");
   EXPECT_EQ(with(21, 1), "byte 21: a buffer's format is 1, more than 0");
   EXPECT_EQ(with(23, 0x40), "byte 22: a buffer's width is 16387, but it can be 1 to 16384");

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <utility>
 
+#include "raster/stencil_text.h"
 #include "testing/difference.h"
 
 namespace gnomon::testing {
@@ -17,8 +18,9 @@ namespace {
 std::vector<Column> columns(const raster::StencilBuffer& actual,
                             const raster::StencilBuffer& expected) {
   std::vector<Column> both{{"expected", {}}, {"actual", {}}};
-  for (const std::uint8_t value : expected.to_rows()) both[0].glyphs += glyph(value);
-  for (const std::uint8_t value : actual.to_rows()) both[1].glyphs += glyph(value);
+  for (const std::uint8_t value : expected.to_rows())
+    both[0].glyphs += raster::stencil_glyph(value);
+  for (const std::uint8_t value : actual.to_rows()) both[1].glyphs += raster::stencil_glyph(value);
   return both;
 }
 template <class Buffer>

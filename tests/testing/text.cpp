@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "raster/stencil_text.h"
 #include "testing/difference.h"
 
 namespace gnomon::testing {
@@ -14,7 +15,7 @@ namespace {
 
 std::optional<std::uint8_t> value_of(char c) {
   for (int value = 0; value < 256; ++value)
-    if (c != '#' && glyph(static_cast<std::uint8_t>(value)) == c)
+    if (c != '#' && raster::stencil_glyph(static_cast<std::uint8_t>(value)) == c)
       return static_cast<std::uint8_t>(value);
   return std::nullopt;
 }
@@ -32,21 +33,8 @@ std::string range(const Rows& rows) {
 
 }  // namespace
 
-char glyph(std::uint8_t value) {
-  if (value == 0) return '.';
-  if (value < 10) return static_cast<char>('0' + value);
-  if (value < 36) return static_cast<char>('a' + (value - 10));
-  if (value >= 230) return static_cast<char>('A' + (255 - value));
-  return '#';
-}
-
 std::string to_text(const raster::StencilBuffer& stencil) {
-  std::string text;
-  for (int y = stencil.height() - 1; y >= 0; --y) {
-    for (int x = 0; x < stencil.width(); ++x) text += glyph(stencil.at(x, y));
-    text += '\n';
-  }
-  return text;
+  return raster::stencil_text(stencil, {0, 0, stencil.width(), stencil.height()});
 }
 
 raster::StencilBuffer stencil_of(std::string_view text) {

@@ -1,10 +1,5 @@
-// Stencil counts as text, the way one sees them: the top row first, one character a pixel.
-//
-//   .        0
-//   1 to 9   1 to 9
-//   a to z   10 to 35
-//   A to Z   -1 to -26, counts that wrapped below zero: A is 255, B is 254, Z is 230
-//   #        36 to 229; written but never read, because it names no one value
+// Stencil counts as text (raster/stencil_text.h), and back: # is written but never read, because it
+// names no one value.
 #pragma once
 
 #include <iosfwd>
@@ -22,9 +17,6 @@ std::string to_text(const raster::StencilBuffer& stencil);
 /// indented. Throws std::invalid_argument that names the place if a character stands for no value,
 /// rows differ in length, or there is no pixel.
 raster::StencilBuffer stencil_of(std::string_view text);
-
-/// The character of one value.
-char glyph(std::uint8_t value);
 
 }  // namespace gnomon::testing
 

@@ -6,6 +6,8 @@
 
 #include <stdexcept>
 
+#include "raster/stencil_text.h"
+
 using namespace gnomon::raster;
 using namespace gnomon::testing;
 using ::testing::PrintToString;
@@ -30,7 +32,7 @@ TEST(StencilText, HasSmallLettersAboveNineAndCapitalsBelowZero) {
 
 TEST(StencilText, ReadsEveryValueThatHasACharacter) {
   for (int value = 0; value < 256; ++value) {
-    const char c = glyph(static_cast<std::uint8_t>(value));
+    const char c = gnomon::raster::stencil_glyph(static_cast<std::uint8_t>(value));
     EXPECT_EQ(c == '#', value >= 36 && value < 230);
     if (c == '#') continue;
     EXPECT_EQ(stencil_of(std::string(1, c)).at(0, 0), value);
