@@ -44,6 +44,10 @@ void run(ArArguments& arguments) {
   const bool in_parts = arguments.merge || arguments.shard != "1/1";
   if (in_parts && arguments.video.empty())
     throw ar::InputError("ar: --shard and --merge go with --video");
+  if (arguments.out.empty() && !(arguments.show && !in_parts))
+    throw ar::InputError("ar: --out is needed");
+  if (arguments.show && (in_parts || !arguments.image.empty()))
+    throw ar::InputError("ar: --show goes with a whole --video or with --camera");
   if (!arguments.image.empty()) return run_still(arguments);
   if (arguments.steps) throw ar::InputError("ar: --steps goes with --image");
   if (!arguments.save_frame.empty()) throw ar::InputError("ar: --save-frame goes with --image");
@@ -62,7 +66,8 @@ void add_ar(CLI::App& program) {
   command->add_option("--video", arguments->video, "Video file");
   command->add_option("--camera", arguments->camera, "Number of a live camera")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--out", arguments->out, "Folder for the results")->required();
+  command->add_option("--out", arguments->out,
+                      "Folder for the results; not needed with --show, which then writes nothing");
   command->add_flag("--steps", arguments->steps,
                     "Also write colour, depth and stencil after every pass (photograph only)");
   command->add_option("--save-frame", arguments->save_frame,
@@ -106,6 +111,9 @@ void add_ar(CLI::App& program) {
       ->add_option("--frames", arguments->frames,
                    "Stop a video or camera after so many frames (0: at its end)")
       ->check(CLI::NonNegativeNumber);
+  command->add_flag("--show", arguments->show,
+                    "Show a video or camera in a window as it is drawn; h there lists the keys for "
+                    "colour, depth, stencil and passes");
   command->add_option("--shard", arguments->shard,
                       "Draw part I of N of a video's frames (I/N), for a scheduler; then --merge");
   command->add_flag("--merge", arguments->merge,
@@ -117,6 +125,7 @@ void add_ar(CLI::App& program) {
       "  gnomon ar examples/desk/01_torus_on_house.toml --image examples/desk/background.png --out "
       "out --steps\n"
       "  gnomon ar scene.toml --video clip.avi --out out --method zfail --json\n"
+      "  gnomon ar scene.toml --camera 0 --show\n"
       "  gnomon ar scene.toml --video clip.avi --out out --shard 2/8   # then --merge\n"
       "  gnomon ar examples/soft/suzanne.toml --image examples/soft/background.png --out out "
       "--method differential --passes 100");

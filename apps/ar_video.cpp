@@ -6,6 +6,7 @@
 
 #include "apps/ar_arguments.h"
 #include "apps/ar_json.h"
+#include "apps/live_window.h"
 #include "apps/output_folder.h"
 #include "apps/progress.h"
 #include "apps/study/shard.h"
@@ -64,10 +65,14 @@ void run_video(const ArArguments& arguments) {
     throw ar::InputError("--shard: not with a budget of time, whose frames depend on those before");
   ar::Session session(scene, reader.width(), reader.height(), options);
   for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
-  const fs::path target = arguments.out / "composite.avi";
-  check_folder(arguments.out);
-  refuse_to_replace(arguments.video, target);
-  VideoFrames frames(arguments.out, reader, asked_for(arguments), shard);
+  std::optional<VideoFrames> frames;
+  if (!arguments.out.empty()) {
+    check_folder(arguments.out);
+    refuse_to_replace(arguments.video, arguments.out / "composite.avi");
+    frames.emplace(arguments.out, reader, asked_for(arguments), shard);
+  }
+  std::optional<LiveWindow> window;
+  if (arguments.show) window.emplace(arguments.scene.filename().string());
 
   VideoSummary summary;
   std::size_t number = 0;
@@ -79,11 +84,13 @@ void run_video(const ArArguments& arguments) {
     for (; arguments.frames == 0 || number < static_cast<std::size_t>(arguments.frames); ++number) {
       const std::optional<ar::VideoFrame> frame = reader.next();
       if (!frame) break;
-      const bool draw = frames.wants(number);
+      const bool draw = !frames || frames->wants(number);
+      if (window) session.keep_steps(window->wants_steps());
       const ar::SessionResult result = session.process(frame->image, frame->time_s, draw);
       progress.show(static_cast<std::int64_t>(number) + 1);
       if (!draw) continue;
-      frames.write(number, result.augmented ? result.augmented->composite : frame->image);
+      const ar::Image& drawn = result.augmented ? result.augmented->composite : frame->image;
+      if (frames) frames->write(number, drawn);
       summary.add(result);
       if (arguments.as_json) {
         json line = {{"frame", frame->index},
@@ -96,9 +103,13 @@ void run_video(const ArArguments& arguments) {
         if (result.differential) line["differential"] = differential_json(*result.differential);
         std::cout << line.dump() << '\n';
       }
+      if (window && !window->show(drawn, result)) {
+        ++number;
+        break;
+      }
     }
   }
-  const fs::path written = frames.finish(number);
+  const fs::path written = frames ? frames->finish(number) : fs::path();
   summary.missing = reader.missing_frames();
   const double count = static_cast<double>(std::max<std::int64_t>(summary.frames, 1));
   const double drawn = static_cast<double>(std::max<std::int64_t>(summary.augmented, 1));
@@ -122,7 +133,7 @@ void run_video(const ArArguments& arguments) {
   if (summary.missing > 0)
     std::cout << fmt::format("the video ends early: its header promises {} frames more\n",
                              summary.missing);
-  std::cout << "wrote " << written.string() << '\n';
+  if (!written.empty()) std::cout << "wrote " << written.string() << '\n';
 }
 
 void run_video_merge(const ArArguments& arguments) {

@@ -26,6 +26,15 @@ void add_fit(CLI::App& program);
 /// gnomon golden --verify: do the golden frames have their bytes on this machine?
 void add_golden(CLI::App& program);
 
+/// gnomon history FRAME X Y: what happened at a pixel.
+void add_history(CLI::App& program);
+
+/// gnomon inspect SCENE|FRAME: a page that shows every buffer and every fragment.
+void add_inspect(CLI::App& program);
+
+/// gnomon lab: the rasterizer as a page to play with, and its states as pictures.
+void add_lab(CLI::App& program);
+
 /// gnomon mesh COMMAND: is a mesh fit for shadow volumes?
 void add_mesh(CLI::App& program);
 

@@ -40,6 +40,9 @@ int run(int argc, char** argv) {
       "  gnomon chart --out out\n"
       "  gnomon compare rendered.png photograph.png --mask region.png\n"
       "  gnomon fit scene.toml --image photograph.png --error 1px --out out\n"
+      "  gnomon history recorded.frame 320 240\n"
+      "  gnomon inspect scene.toml --image photograph.png --out page.html\n"
+      "  gnomon lab --page lab.html\n"
       "  gnomon mesh check model.glb\n"
       "  gnomon render scene.toml --out out\n"
       "  gnomon replay recorded.frame --out out\n"
@@ -52,6 +55,9 @@ int run(int argc, char** argv) {
   gnomon::apps::add_compare(program);
   gnomon::apps::add_fit(program);
   gnomon::apps::add_golden(program);
+  gnomon::apps::add_history(program);
+  gnomon::apps::add_inspect(program);
+  gnomon::apps::add_lab(program);
   gnomon::apps::add_mesh(program);
   gnomon::apps::add_render(program);
   gnomon::apps::add_replay(program);

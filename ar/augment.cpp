@@ -55,6 +55,8 @@ struct Augmenter::Impl {
   }
 };
 
+void Augmenter::keep_steps(bool keep) { impl_->options.steps = keep; }
+
 Augmenter::Augmenter(const Lens& lens, const AugmentOptions& options)
     : impl_(std::make_unique<Impl>(lens, options)) {}
 Augmenter::~Augmenter() = default;

@@ -63,6 +63,9 @@ class Augmenter {
 
   const PinholeView& view() const;
 
+  /// As AugmentOptions::steps, from the next picture on.
+  void keep_steps(bool keep);
+
   /// One light is drawn in RGBA8 as in the paper; several, and a light of several points, in
   /// RGBA32F, since each part would be rounded. `world_from_camera` has OpenCV's axes.
   /// Preconditions: three channels, the camera's size; a pose that can be inverted.

@@ -154,6 +154,8 @@ DifferentialAugmenter::DifferentialAugmenter(DifferentialAugmenter&&) noexcept =
 
 const PinholeView& DifferentialAugmenter::view() const { return impl_->view; }
 const pipeline::LightPaths& DifferentialAugmenter::paths() const { return impl_->paths; }
+void DifferentialAugmenter::keep_steps(bool keep) { impl_->settings.steps = keep; }
+
 void DifferentialAugmenter::set_passes(std::size_t passes) {
   impl_->settings.method.take.passes = passes;
 }

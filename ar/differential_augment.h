@@ -55,6 +55,8 @@ class DifferentialAugmenter {
   const pipeline::LightPaths& paths() const;
   /// From the next picture on, in place of the settings' number; not with a budget.
   void set_passes(std::size_t passes);
+  /// As DifferentialSettings::steps, from the next picture on.
+  void keep_steps(bool keep);
 
   /// Only virtual objects of `objects` are drawn and cast; the real ones are the lit scene's.
   /// Preconditions: three channels, the camera's size; a pose that can be inverted.

@@ -125,6 +125,12 @@ Session::Session(const SceneFile& file, int width, int height, const SessionOpti
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 
+void Session::keep_steps(bool keep) {
+  impl_->augmenter.keep_steps(keep);
+  if (impl_->differential_settings) impl_->differential_settings->settings.steps = keep;
+  if (impl_->differential) impl_->differential->keep_steps(keep);
+}
+
 SessionResult Session::process(const Image& picture, double time_s, bool draw) {
   SessionResult result;
   const auto start = std::chrono::steady_clock::now();

@@ -66,6 +66,9 @@ class Session {
   /// later pictures needs. Precondition: three channels, the session's size.
   SessionResult process(const Image& picture, double time_s, bool draw = true);
 
+  /// As SessionOptions::steps, from the next picture on.
+  void keep_steps(bool keep);
+
   /// What the model reader left out, one sentence each.
   const std::vector<std::string>& notes() const;
   /// The ids that the scene knows, for messages.

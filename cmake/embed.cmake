@@ -1,5 +1,5 @@
 # Writes a C++ file that holds text files as constants. Arguments: OUTPUT, NAMESPACE, and FILES, a list of NAME=PATH.
-set(text "// Made when the program was built; the files that it holds are named by apps/study/CMakeLists.txt.\n#include <string_view>\n\nnamespace ${NAMESPACE} {\n\n")
+set(text "// Made when the program was built; the files that it holds are named by the CMakeLists.txt that asked for it.\n#include <string_view>\n\nnamespace ${NAMESPACE} {\n\n")
 foreach(pair IN LISTS FILES)
   string(REGEX MATCH "^([^=]+)=(.*)$" unused "${pair}")
   set(name "${CMAKE_MATCH_1}")

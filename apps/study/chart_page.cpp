@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/page_template.h"
 #include "apps/study/page_assets.h"
 #include "apps/study/page_image.h"
 

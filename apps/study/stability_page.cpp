@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/page_template.h"
 #include "apps/study/page_assets.h"
 
 namespace gnomon::apps::study {

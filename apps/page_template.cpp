@@ -1,10 +1,10 @@
-#include "apps/study/page_assets.h"
+#include "apps/page_template.h"
 
 #include <algorithm>
 
 #include "raster/check.h"
 
-namespace gnomon::apps::study {
+namespace gnomon::apps {
 
 std::string fill_template(
     std::string_view page,
@@ -31,4 +31,4 @@ std::string script_safe(std::string json) {
   return json;
 }
 
-}  // namespace gnomon::apps::study
+}  // namespace gnomon::apps

@@ -1,0 +1,121 @@
+#include "apps/inspector/inspection.h"
+
+#include <algorithm>
+
+#include "apps/inspector/frame_json.h"
+#include "raster/check.h"
+#include "raster/history.h"
+
+namespace gnomon::apps::inspector {
+
+namespace {
+
+/// Most that is kept to go back quickly, in bytes.
+constexpr std::size_t kSavedBytes = std::size_t{256} << 20;
+
+std::size_t bytes_of(const raster::Buffer& buffer) {
+  const auto pixels = std::visit(
+      [](const auto& b) { return static_cast<std::size_t>(b.width()) * b.height(); }, buffer);
+  if (std::holds_alternative<raster::StencilBuffer>(buffer)) return pixels;
+  const auto* color = std::get_if<raster::ColorBuffer>(&buffer);
+  return pixels * (color && color->format() == raster::ColorFormat::rgba32f ? 16 : 4);
+}
+
+std::string text_of(const nlohmann::ordered_json& json) {
+  // A label is bytes; those that are no UTF-8 are replaced.
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Inspection::Inspection(std::shared_ptr<const void> owner, const raster::Frame& frame)
+    : owner_(std::move(owner)), frame_(frame), buffers_(frame) {
+  buffers_.reset();
+}
+
+Inspection::Place Inspection::at(std::size_t command) const {
+  for (const raster::Pass& pass : frame_.passes()) {
+    if (command < pass.commands.size()) return {&pass, &pass.commands[command]};
+    command -= pass.commands.size();
+  }
+  raster::require(false, "a command is one of the frame's");
+  return {};
+}
+
+bool Inspection::begins_pass(std::size_t command) const {
+  for (const raster::Pass& pass : frame_.passes()) {
+    if (command == 0) return true;
+    if (command < pass.commands.size()) return false;
+    command -= pass.commands.size();
+  }
+  return false;
+}
+
+void Inspection::run_to(std::size_t commands) {
+  while (position_ < commands) {
+    std::size_t stop = position_ + 1;
+    while (stop < commands && !begins_pass(stop)) ++stop;
+    raster::execute(frame_, {.memory = &memory_, .first_command = position_, .commands = stop});
+    position_ = stop;
+    if (!begins_pass(position_) || (!saved_.empty() && saved_.back().commands >= position_))
+      continue;
+    std::vector<raster::Buffer> now = buffers_.save();
+    std::size_t bytes = 0;
+    for (const raster::Buffer& buffer : now) bytes += bytes_of(buffer);
+    if (bytes * (saved_.size() + 1) <= kSavedBytes) saved_.push_back({position_, std::move(now)});
+  }
+}
+
+void Inspection::seek(std::size_t commands) {
+  commands = std::min(commands, frame_.command_count());
+  if (commands < position_) {
+    const auto after = std::ranges::upper_bound(saved_, commands, {}, &Saved::commands);
+    if (after == saved_.begin()) {
+      buffers_.reset();
+      position_ = 0;
+    } else {
+      buffers_.restore(std::prev(after)->buffers);
+      position_ = std::prev(after)->commands;
+    }
+  }
+  run_to(commands);
+}
+
+raster::DrawFates Inspection::fates(std::size_t first, std::size_t last) {
+  last = std::min(last, frame_.command_count());
+  raster::require(first < last, "fates are asked of one command or more");
+  const raster::Targets& targets = at(first).pass->targets;
+  raster::DrawFates out(targets.width(), targets.height());
+  for (std::size_t command = first; command < last; ++command) {
+    const Place place = at(command);
+    if (place.pass->targets.width() != out.width || place.pass->targets.height() != out.height)
+      continue;
+    seek(command);
+    raster::add_fates(*place.command, place.pass->targets, out);
+  }
+  seek(last);
+  return out;
+}
+
+std::string Inspection::history(std::size_t pass, int x, int y, std::size_t commands) {
+  const std::size_t back = position_;
+  buffers_.reset();
+  position_ = 0;
+  const raster::PixelHistory told =
+      raster::history(frame_, x, y, {.pass = pass, .commands = commands});
+  position_ = std::min(commands, frame_.command_count());
+  seek(back);
+  return text_of(history_json(frame_, told));
+}
+
+std::vector<WireEdge> Inspection::wires(std::size_t command) const {
+  const Place place = at(command);
+  const auto* draw = std::get_if<raster::Draw>(place.command);
+  return draw ? wireframe(*draw, place.pass->targets) : std::vector<WireEdge>();
+}
+
+std::string Inspection::description(bool in_brief) const {
+  return text_of(frame_json(frame_, buffers_, in_brief));
+}
+
+}  // namespace gnomon::apps::inspector

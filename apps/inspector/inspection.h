@@ -1,0 +1,65 @@
+// A frame under inspection: its buffers after any number of commands, the fates of fragments, a
+// pixel's history.
+// Invariant: what is shown is what execute() leaves; asking changes nothing.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/inspector/frame_buffers.h"
+#include "apps/inspector/wireframe.h"
+#include "raster/draw_fates.h"
+#include "raster/execute.h"
+
+namespace gnomon::apps::inspector {
+
+class Inspection {
+ public:
+  /// `owner` keeps the frame and its buffers, which belong to the inspection from now on and begin
+  /// as they are constructed.
+  Inspection(std::shared_ptr<const void> owner, const raster::Frame& frame);
+
+  const raster::Frame& frame() const { return frame_; }
+  const FrameBuffers& buffers() const { return buffers_; }
+
+  /// Brings the buffers to what the first so many commands leave.
+  void seek(std::size_t commands);
+
+  /// Of the draws among commands [first, last), which go to targets of one size; others are left
+  /// out, as are draws to targets of another size. The position is `last` afterwards.
+  raster::DrawFates fates(std::size_t first, std::size_t last);
+
+  /// As JSON (history_json). The position stays.
+  std::string history(std::size_t pass, int x, int y, std::size_t commands);
+
+  /// Of a draw; empty for others.
+  std::vector<WireEdge> wires(std::size_t command) const;
+
+  /// As JSON (frame_json).
+  std::string description(bool in_brief = false) const;
+
+ private:
+  struct Saved {
+    std::size_t commands;
+    std::vector<raster::Buffer> buffers;
+  };
+  struct Place {
+    const raster::Pass* pass;
+    const raster::Command* command;
+  };
+  Place at(std::size_t command) const;
+  void run_to(std::size_t commands);
+  bool begins_pass(std::size_t command) const;
+
+  std::shared_ptr<const void> owner_;
+  const raster::Frame& frame_;
+  FrameBuffers buffers_;
+  raster::ExecuteMemory memory_;
+  std::size_t position_ = 0;
+  /// At beginnings of passes, in order.
+  std::vector<Saved> saved_;
+};
+
+}  // namespace gnomon::apps::inspector

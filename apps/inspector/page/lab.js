@@ -1,0 +1,285 @@
+"use strict";
+// The lab: a state, its controls, and the frame that the rasterizer makes of it after every change.
+(async () => {
+  const element = (id) => document.getElementById(id);
+  const data = JSON.parse(element("data").textContent);
+  const make = History.make;
+  const fail = (error) => {
+    element("error").textContent = error ? String(error.message || error) : "";
+    element("error").hidden = !error;
+  };
+  const engine = await Engine.start(element("engine").textContent).catch((error) => { fail(error); throw error; });
+  const slot = 0;
+  let state = {}, description = null, count = 0, picked = null;
+
+  const stories = {
+    "camera-in-shadow": ["The camera in the shadow", "A box throws its shadow on the floor. Tilt the camera and bring it near until it stands in the shadow, with z-pass, then with z-fail: who counts from where?"],
+    "missing-cap": ["The missing cap", "The ball's volume is short and has no base (Haller 2003, figure 3). A ray that enters it through its side and leaves where the base should be is never counted out."],
+    overflow: ["Overflow", "Plates lie above each other, each with its own volume. Count them in eight bits: what do 256 look like that wrap, and what happens to rays that leave some of 300 when counts stop at 255?"],
+    "open-mesh": ["The open mesh", "A box without its lid. Renderers that ask for closed meshes take the triangles that face the light and the edges between them and the rest; compare with the outline as an integer sum over all triangles."],
+    acne: ["Acne", "A shadow map of few texels, without an offset: lit surfaces shadow themselves. Find the least offset that stops it, and see what the shadow loses at its foot."],
+  };
+  const controls = [
+    { legend: "Scene", items: [
+      { name: "stage", label: "stage", options: Object.entries(stories).map(([value, [text]]) => [value, text]) },
+      { name: "plates", label: "plates", range: [1, 400, 1], when: (s) => s.stage === "overflow" }] },
+    { legend: "Shadows", items: [
+      { name: "method", label: "method", options: [["zpass", "z-pass"], ["zfail", "z-fail"], ["auto", "automatic"], ["map", "shadow map"]] },
+      { name: "saturate", label: "counts stop at 0 and 255 (saturate)", when: (s) => s.method !== "map" },
+      { name: "front_cap", label: "front cap", when: (s) => s.method !== "map" },
+      { name: "back_cap", label: "back cap", when: (s) => s.method !== "map" },
+      { name: "length_m", label: "length (0: infinite)", range: [0, 6, 0.05], unit: "m", when: (s) => s.method !== "map" },
+      { name: "classical_outline", label: "outline as for closed meshes only", when: (s) => s.method !== "map" },
+      { name: "map_size", label: "map size", options: [16, 32, 64, 128, 256, 512, 1024, 2048].map((n) => [n, `${n} texels`]), when: (s) => s.method === "map" },
+      { name: "map_offset_factor", label: "offset factor", range: [0, 8, 0.1], when: (s) => s.method === "map" },
+      { name: "map_offset_units", label: "offset units", range: [0, 4000, 10], when: (s) => s.method === "map" },
+      { name: "map_filtered", label: "filtered (2\u00d72)", when: (s) => s.method === "map" },
+      { name: "depth_16_bits", label: "depth of 16 bits" }] },
+    { legend: "Camera", items: [
+      { name: "camera_turn_deg", label: "turn", range: [-180, 180, 1], unit: "\u00b0" },
+      { name: "camera_tilt_deg", label: "tilt", range: [-15, 89, 0.5], unit: "\u00b0" },
+      { name: "camera_distance_m", label: "distance", range: [0.2, 14, 0.05], unit: "m" }] },
+    { legend: "Lamp", items: ["x", "y", "z"].map((axis) => ({ name: `light_${axis}_m`, label: axis, range: axis === "y" ? [0.05, 10, 0.05] : [-5, 5, 0.05], unit: "m" })) },
+    { legend: "Object", items: [
+      ...["x", "y", "z"].map((axis) => ({ name: `object_${axis}_m`, label: axis, range: [-2, 2, 0.02], unit: "m" })),
+      { name: "object_turn_deg", label: "turn", range: [-180, 180, 1], unit: "\u00b0" }] },
+  ];
+  const inputs = [];
+
+  const build = () => {
+    for (const group of controls) {
+      const set = make("fieldset", undefined, element("controls"));
+      make("legend", group.legend, set);
+      for (const item of group.items) {
+        const label = make("label", undefined, set);
+        let input;
+        if (item.options) {
+          make("span", item.label, label);
+          input = make("select", undefined, label);
+          input.replaceChildren(...item.options.map(([value, text]) => new Option(text, value)));
+        } else if (item.range) {
+          make("span", item.label, label);
+          input = make("input", undefined, label);
+          Object.assign(input, { type: "range", min: item.range[0], max: item.range[1], step: item.range[2] });
+          item.output = make("output", undefined, label);
+        } else {
+          input = make("input", undefined, label);
+          input.type = "checkbox";
+          label.className = "flag";
+          label.append(item.label);
+        }
+        input.id = item.name;
+        input.addEventListener("input", () => change(item, input));
+        inputs.push({ item, input, label });
+      }
+    }
+  };
+  const change = (item, input) => {
+    if (item.name === "stage") return set({ stage: input.value });
+    state[item.name] = input.type === "checkbox" ? input.checked : item.range || item.name === "map_size" ? Number(input.value) : input.value;
+    request();
+  };
+  /// A state with the stage's own values where it says nothing.
+  const set = (fields) => {
+    const before = state;
+    state = { format: "gnomon-lab", version: 1, ...fields };
+    picked = null;
+    view.picked = null;
+    try {
+      drawNow();
+    } catch (error) {
+      state = before;
+      throw error;
+    }
+  };
+  const showControls = () => {
+    for (const { item, input, label } of inputs) {
+      if (input.type === "checkbox") input.checked = state[item.name];
+      else if (document.activeElement !== input || item.options) input.value = state[item.name];
+      if (item.output) item.output.textContent = `${Number(state[item.name].toFixed(2))} ${item.unit || ""}`;
+      label.hidden = item.when ? !item.when(state) : false;
+      label.style.display = label.hidden ? "none" : "";
+    }
+    const [title, text] = stories[state.stage], box = element("story");
+    if (box.dataset.stage === state.stage) return;
+    box.dataset.stage = state.stage;
+    box.replaceChildren();
+    make("h2", title, box);
+    make("p", text, box);
+  };
+
+  const passNamed = (begin) => description.passes.findIndex((p) => p.label.startsWith(begin));
+  const rangeOf = (p) => {
+    const first = description.passes.slice(0, p).reduce((n, pass) => n + pass.commands, 0);
+    return [first, first + description.passes[p].commands];
+  };
+
+  /// Executes the frame and returns the buffer that is to be shown.
+  const execute = () => {
+    const show = element("show").value, counting = passNamed("shadow volumes");
+    // The lit pass marks what it lit, so counts are looked at before it.
+    const stop = show === "stencil" && counting >= 0 ? rangeOf(counting)[1] : count;
+    engine.seek(slot, stop);
+    const map = passNamed("shadow map"), { targets } = description.passes[0];
+    const number = show === "map" ? (map >= 0 ? description.passes[map].targets.depth : targets.depth) : targets[show];
+    const buffer = description.buffers[number];
+    return { ...buffer, values: engine.buffer(slot, number, buffer.kind), farthest: buffer.format === "d16" ? 0xffff : 0xffffff };
+  };
+
+  const times = [];
+  const drawNow = () => {
+    const start = performance.now();
+    state = engine.loadLab(slot, state);
+    description = engine.describe(slot, true);
+    count = rangeOf(description.passes.length - 1)[1];
+    const b = execute();
+    // A copy: the module's memory is used again.
+    view.show(b.kind, b.values.slice(), b.width, b.height, b.farthest);
+    view.buffer = b;
+    const ms = performance.now() - start;
+    times.push(ms);
+    if (times.length > 20) times.shift();
+    const sorted = [...times].sort((x, y) => x - y), median = sorted[sorted.length >> 1];
+    element("speed").textContent = `${b.width}\u00d7${b.height} in ${median.toFixed(1)} ms (median of ${times.length}): ${Math.floor(1000 / median)} frames a second`;
+    showControls();
+    fail(null);
+    return ms;
+  };
+  const layers = () => {
+    const counting = passNamed("shadow volumes"), layer = element("layer").value;
+    const legend = element("legend");
+    legend.replaceChildren();
+    const add = (color, text) => {
+      const item = make("span", undefined, legend);
+      make("span", undefined, item, "chip").style.background = `rgb(${color.join(" ")})`;
+      item.append(text);
+    };
+    let overlay = null, wires = null;
+    if (counting >= 0 && element("wires").checked && element("show").value !== "map") {
+      const all = [], [first, last] = rangeOf(counting);
+      // The wires of very many volumes hide everything.
+      for (let i = first; i < Math.min(last, first + 40); ++i) all.push(engine.wires(slot, i));
+      wires = Int32Array.from(all.flatMap((edges) => [...edges]));
+    }
+    if (counting >= 0 && layer !== "none" && element("show").value !== "map") {
+      const fates = engine.fates(slot, ...rangeOf(counting));
+      const [up, down, names] = layer === "counts" ? [fates.raised, fates.lowered, ["INCR", "DECR"]] : [fates.passed, fates.depthFailed, ["passed", "failed"]];
+      const blue = [0, 114, 178], orange = [213, 94, 0], violet = [204, 121, 167];
+      overlay = { color: (i) => up[i] && down[i] ? [...violet, 220] : up[i] ? [...blue, 200] : down[i] ? [...orange, 200] : [255, 255, 255, 110],
+        note: (i) => `${names[0]} ${up[i]}, ${names[1]} ${down[i]}` };
+      add(blue, names[0]);
+      add(orange, names[1]);
+      add(violet, "both");
+    }
+    view.setOverlay(overlay?.color, overlay?.note);
+    view.setWires(wires);
+    if (view.kind === "stencil") {
+      const pixels = new Array(256).fill(0);
+      for (const value of view.values) ++pixels[value];
+      pixels.forEach((n, value) => { if (n) add(data.palette[value], `${value}${value >= 128 ? ` (${value - 256})` : ""}: ${n} px`); });
+    }
+  };
+  /// What takes longer than a frame, once the hand rests.
+  let resting = null;
+  const rest = () => {
+    clearTimeout(resting);
+    resting = setTimeout(() => {
+      engine.seek(slot, count);
+      element("hashes").textContent = engine.hashes(slot).join("\n");
+      if (picked) tell(picked.x, picked.y);
+      status(view.cursor.x, view.cursor.y);
+    }, 120);
+  };
+  let requested = false;
+  const request = () => {
+    if (requested) return;
+    requested = true;
+    requestAnimationFrame(() => {
+      requested = false;
+      try {
+        drawNow();
+        layers();
+        rest();
+      } catch (error) { fail(error); }
+    });
+  };
+
+  const tell = (x, y) => {
+    picked = { x, y };
+    const counting = passNamed("shadow volumes");
+    try {
+      const told = engine.history(slot, 0, x, y, count), whole = engine.describe(slot);
+      const commands = whole.passes.flatMap((pass) => pass.commands);
+      History.show(element("history"), told, whole, commands, Math.max(counting, 0), data.palette, () => {});
+      lab.history = told;
+    } catch (error) { fail(error); }
+  };
+  const status = (x, y) => {
+    const box = element("status");
+    if (!view.values || x >= view.width || y >= view.height) return;
+    const parts = [`pixel ${x}, ${y} from the bottom left`, `${view.kind}: ${view.valueText(x, y)}`];
+    if (view.layers.overlay?.note) parts.push(view.layers.overlay.note(y * view.width + x));
+    box.replaceChildren();
+    for (const part of parts) make("span", part, box);
+  };
+  const view = new View(element("canvas"), data.palette, { onPick: tell, onMove: status });
+
+  const download = (name, bytes, type) => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([bytes], { type }));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  };
+  element("save").addEventListener("click", () => download("lab.json", JSON.stringify(state, null, 2) + "\n", "application/json"));
+  element("saveframe").addEventListener("click", () => download("lab.frame", engine.save(slot), "application/octet-stream"));
+  element("open").addEventListener("click", () => element("file").click());
+  element("file").addEventListener("change", async () => {
+    const [file] = element("file").files;
+    if (!file) return;
+    try {
+      set(JSON.parse(await file.text()));
+      request();
+    } catch (error) { fail(`${file.name}: ${error.message}`); }
+    element("file").value = "";
+  });
+  element("help").addEventListener("click", () => element("helpbox").showModal());
+  for (const id of ["show", "layer", "wires"]) element(id).addEventListener("change", request);
+  const choose = (id, value) => { element(id).value = value; request(); };
+  const keys = {
+    c: () => choose("show", "color"), s: () => choose("show", "stencil"), d: () => choose("show", "depth"),
+    z: () => { state.method = state.method === "zpass" ? "zfail" : "zpass"; request(); },
+    m: () => { state.saturate = !state.saturate; request(); },
+    h: () => element("helpbox").showModal(),
+  };
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches("select, dialog *") || !keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+  });
+
+  window.lab = {
+    engine, view, history: null,
+    /// Draws a state and returns the hashes of its buffers.
+    hashesOf: (given) => { set(given); layers(); engine.seek(slot, count); return engine.hashes(slot); },
+    get state() { return state; },
+    /// Milliseconds of each of n frames of a camera that turns.
+    measure: (n) => {
+      const turn = state.camera_turn_deg, all = [];
+      for (let i = 0; i < n; ++i) {
+        state.camera_turn_deg = turn + i * 0.5;
+        const start = performance.now();
+        drawNow();
+        view.drawNow();
+        all.push(performance.now() - start);
+      }
+      state.camera_turn_deg = turn;
+      request();
+      return all;
+    },
+  };
+  build();
+  set({ stage: "camera-in-shadow" });
+  request();
+  document.body.dataset.ready = "yes";
+})();

@@ -1,0 +1,14 @@
+// Sine and cosine that are the same on every machine: a library's own may differ in the last bit,
+// and then the frames of a page and of the program would differ too.
+#pragma once
+
+namespace gnomon::apps::inspector {
+
+struct Turn {
+  double cosine = 1.0, sine = 0.0;
+};
+
+/// Of a finite angle; within 1e-15. Sums and products only, each rounded once in a written order.
+Turn turn_of_degrees(double degrees);
+
+}  // namespace gnomon::apps::inspector
