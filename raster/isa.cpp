@@ -9,15 +9,16 @@ namespace gnomon::raster {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kNames{"best", "scalar", "ssse3",     "sse4",
-                                                 "avx2", "avx512", "avx512_dl", "neon"};
+constexpr std::array<std::string_view, 9> kNames{"best",   "scalar",    "ssse3", "sse4", "avx2",
+                                                 "avx512", "avx512_dl", "neon",  "wasm"};
 
 }  // namespace
 
 std::span<const Isa> available_isas() {
   static const std::vector<Isa> kAvailable = [] {
     std::vector<Isa> isas{Isa::scalar};
-    for (const Isa isa : {Isa::neon, Isa::ssse3, Isa::sse4, Isa::avx2, Isa::avx512, Isa::avx512_dl})
+    for (const Isa isa :
+         {Isa::wasm, Isa::neon, Isa::ssse3, Isa::sse4, Isa::avx2, Isa::avx512, Isa::avx512_dl})
       if (simd_kernels(isa)) isas.push_back(isa);
     return isas;
   }();

@@ -21,14 +21,16 @@ enum class Isa : std::uint8_t {
   avx512,
   /// AVX-512 with what Ice Lake added (VBMI, VNNI, BITALG and others).
   avx512_dl,
-  neon
+  neon,
+  /// WebAssembly's vectors of 128 bits.
+  wasm
 };
 
 /// Those that this build has and this machine can run: scalar first, then from narrow to wide;
 /// never `best`.
 std::span<const Isa> available_isas();
 
-/// "best", "scalar", "ssse3", "sse4", "avx2", "avx512", "avx512_dl" or "neon".
+/// "best", "scalar", "ssse3", "sse4", "avx2", "avx512", "avx512_dl", "neon" or "wasm".
 std::string_view name(Isa isa);
 /// The one with this name; nothing if there is none.
 std::optional<Isa> isa_named(std::string_view name);

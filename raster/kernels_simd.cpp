@@ -15,8 +15,10 @@
 #include <hwy/highway.h>
 
 // A machine without vectors has the kernels in plain C++.
-// WebAssembly's vectors want doubles, which Highway 1.0 has not got for them.
-#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128 && HWY_TARGET != HWY_WASM
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+
+// First: the others may need it.
+#include "raster/wasm_doubles-inl.h"
 
 #include "raster/blend_block-inl.h"
 #include "raster/count_blocks-inl.h"
@@ -24,8 +26,12 @@
 #include "raster/depth_ranges-inl.h"
 #include "raster/light_vertices-inl.h"
 #include "raster/lookup_bounds-inl.h"
+#if HWY_TARGET != HWY_WASM
 #include "raster/project-inl.h"
+#endif
+#if HWY_TARGET != HWY_WASM
 #include "raster/select_triangles-inl.h"
+#endif
 #include "raster/shade_blocks-inl.h"
 #include "raster/test_blocks-inl.h"
 #include "raster/transform-inl.h"
@@ -34,6 +40,29 @@ HWY_BEFORE_NAMESPACE();
 namespace gnomon::raster {
 namespace HWY_NAMESPACE {
 
+#if HWY_TARGET == HWY_WASM
+// The front end's, which are all doubles, are those in plain C++.
+const Kernels* kernels_of_this_target() {
+  static const Kernels kKernels{cover_blocks,
+                                cover_pixels,
+                                compare_ranges,
+                                test_blocks,
+                                count_blocks,
+                                add_to_blocks,
+                                stencil_blocks,
+                                depth_range,
+                                fill_block,
+                                blend_block,
+                                shade_and_store,
+                                lookup_fails,
+                                store_colors,
+                                transform,
+                                scalar_kernels().project,
+                                light_vertices,
+                                scalar_kernels().select_triangles};
+  return &kKernels;
+}
+#else
 const Kernels* kernels_of_this_target() {
   static constexpr Kernels kKernels{
       cover_blocks,   cover_pixels, compare_ranges, test_blocks,    count_blocks,    add_to_blocks,
@@ -41,6 +70,7 @@ const Kernels* kernels_of_this_target() {
       store_colors,   transform,    project,        light_vertices, select_triangles};
   return &kKernels;
 }
+#endif
 
 }  // namespace HWY_NAMESPACE
 }  // namespace gnomon::raster
@@ -51,11 +81,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace gnomon::raster {
 
-#if HWY_ARCH_WASM
-const Kernels* simd_kernels(Isa) { return nullptr; }
-#else
 const Kernels* simd_kernels(Isa isa) {
+#if HWY_ARCH_WASM
+  // What a module was compiled with, it runs with.
+  constexpr std::int64_t machine = HWY_TARGETS;
+#else
   static const std::int64_t machine = hwy::SupportedTargets();
+#endif
   [[maybe_unused]] const auto if_machine_has = [](std::int64_t target, const Kernels* kernels) {
     return (machine & target) != 0 ? kernels : nullptr;
   };
@@ -84,11 +116,14 @@ const Kernels* simd_kernels(Isa isa) {
     case Isa::neon:
       return if_machine_has(HWY_NEON, N_NEON::kernels_of_this_target());
 #endif
+#if HWY_TARGETS & HWY_WASM
+    case Isa::wasm:
+      return if_machine_has(HWY_WASM, N_WASM::kernels_of_this_target());
+#endif
     default:
       return nullptr;
   }
 }
-#endif
 
 }  // namespace gnomon::raster
 #endif  // HWY_ONCE

@@ -83,10 +83,12 @@ pipeline::Scene lab_scene(const LabState& state) {
   pipeline::Scene scene;
   scene.ambient = glm::vec3(1.0f);
   glm::mat4 floor_place(1.0f);
-  pipeline::Mesh floor = pipeline::square_mesh(6.0f);
+  // A map shows what casts, so the floor of the stage about maps is as small as one map can see.
+  const bool floor_casts = state.stage == LabStage::acne;
+  pipeline::Mesh floor = pipeline::square_mesh(floor_casts ? 2.2f : 6.0f);
   scene.objects.push_back(
       object("floor", model(std::move(floor), {0.72f, 0.74f, 0.78f}, true), floor_place));
-  scene.objects.back().casts = false;
+  scene.objects.back().casts = floor_casts;
   switch (state.stage) {
     case LabStage::camera_in_shadow:
       scene.objects.push_back(
@@ -116,7 +118,6 @@ pipeline::Scene lab_scene(const LabState& state) {
       scene.objects.push_back(object("ball",
                                      model(pipeline::icosphere_mesh(0.5f, 3), {0.3f, 0.5f, 0.8f}),
                                      placed(state, {-0.6f, 0.5f, 0.3f})));
-      scene.objects.front().casts = true;
       break;
   }
   pipeline::Light lamp;

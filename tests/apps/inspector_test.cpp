@@ -209,40 +209,77 @@ TEST(Turn, IsTheLibrarysToTheLastDigits) {  // oracle: std::cos and std::sin
   EXPECT_EQ(turn_of_degrees(-180.0).cosine, -1.0);
 }
 
-std::size_t lit_pixels(const LabState& state) {
-  const auto lab = record_lab(state);
-  raster::execute(lab->frame);
-  std::size_t lit = 0;
-  // The lit pass marks what it lights.
-  for (const std::uint8_t mark : lab->stencil.to_rows()) lit += mark == 1;
-  return lit;
+/// Pixels whose colour differs.
+std::size_t differing(const LabState& a, const LabState& b) {
+  const auto picture = [](const LabState& state) {
+    const auto lab = record_lab(state);
+    raster::execute(lab->frame);
+    return lab->color.to_rgba8_rows();
+  };
+  const std::vector<std::uint8_t> left = picture(a), right = picture(b);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < left.size(); i += 4)
+    count += !std::equal(left.begin() + static_cast<std::ptrdiff_t>(i),
+                         left.begin() + static_cast<std::ptrdiff_t>(i + 4),
+                         right.begin() + static_cast<std::ptrdiff_t>(i));
+  return count;
 }
 
-// Oracle: z-fail, which is right wherever the camera is (docs/haller.md).
-TEST(LabFrame, ZPassIsRightOutsideTheShadowAndWrongInsideIt) {
-  LabState outside = starting_state(LabStage::camera_in_shadow);
-  outside.camera_tilt_deg = 35.0;
-  LabState right = outside;
+LabState stage(LabStage stage) { return starting_state(stage); }
+
+// Oracle of the lessons' states: z-fail with both caps and wrapping counts, which is right
+// (docs/volumes.md), and the numbers of docs/lesson.md.
+TEST(Lesson, ZPassIsRightOutsideTheShadowAndWrongInsideIt) {
+  LabState state = stage(LabStage::camera_in_shadow), right = state;
   right.method = LabMethod::zfail;
-  EXPECT_EQ(lit_pixels(outside), lit_pixels(right));
-  // Under the box, between it and the floor.
-  LabState inside = outside;
-  inside.camera_turn_deg = -140.0;
-  inside.camera_tilt_deg = -3.0;
-  inside.camera_distance_m = 0.9;
-  right = inside;
-  right.method = LabMethod::zfail;
-  EXPECT_NE(lit_pixels(inside), lit_pixels(right));
+  EXPECT_EQ(differing(state, right), 0u);
+  for (LabState* s : {&state, &right}) {
+    s->camera_turn_deg = -140.0;
+    s->camera_tilt_deg = 10.0;
+    s->camera_distance_m = 2.0;
+  }
+  EXPECT_EQ(differing(state, right), 173130u);
 }
 
-// Oracle: closed form: 256 layers are none in eight bits.
-TEST(LabFrame, TwoHundredAndFiftySixVolumesWrapToNone) {
-  LabState state = starting_state(LabStage::overflow);
-  state.width = 160;
-  state.height = 120;
-  const std::size_t wrapped = lit_pixels(state);
-  state.plates = 255;
-  EXPECT_GT(wrapped, lit_pixels(state) + 100);
+TEST(Lesson, AMissingBaseLeavesAShadowWhereThereIsNone) {
+  LabState state = stage(LabStage::missing_cap), right = state;
+  right.back_cap = true;
+  EXPECT_EQ(differing(state, right), 2084u);
+  // z-fail counts from infinity, so it is the front cap that it misses.
+  state.method = right.method = LabMethod::zfail;
+  EXPECT_EQ(differing(state, right), 0u);
+  state.back_cap = true;
+  state.front_cap = false;
+  EXPECT_EQ(differing(state, right), 3262u);
+}
+
+TEST(Lesson, WrappingLoses256VolumesAndSaturatingWhatIsBeyond255) {
+  LabState wraps = stage(LabStage::overflow), saturates = wraps;
+  saturates.saturate = true;
+  wraps.plates = saturates.plates = 255;
+  EXPECT_EQ(differing(wraps, saturates), 0u);
+  wraps.plates = saturates.plates = 256;
+  EXPECT_EQ(differing(wraps, saturates), 5252u);
+  wraps.plates = saturates.plates = 300;
+  EXPECT_EQ(differing(wraps, saturates), 3624u);
+}
+
+TEST(Lesson, TheClassicalOutlineOfAnOpenBoxLosesPartOfItsShadow) {
+  const LabState state = stage(LabStage::open_mesh);
+  LabState right = state;
+  right.classical_outline = false;
+  EXPECT_EQ(differing(state, right), 3688u);
+}
+
+TEST(Lesson, AnOffsetStopsAcne) {
+  LabState state = stage(LabStage::acne), right = state;
+  right.method = LabMethod::zfail;
+  EXPECT_EQ(differing(state, right), 49117u);
+  state.map_offset_factor = 1.0;
+  EXPECT_EQ(differing(state, right), 223u);
+  state.map_offset_factor = 8.0;
+  state.map_offset_units = 1000.0;
+  EXPECT_EQ(differing(state, right), 1833u);
 }
 
 TEST(LiveView, KeysChooseBufferAndPass) {  // oracle: the documented keys

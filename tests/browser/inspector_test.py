@@ -216,16 +216,17 @@ class InspectPage(PageTest):
 
     def test_screenshots_are_taken(self):
         volumes = self.run_script(
-            "const c = inspector.panes[0].commands, last = c.findLastIndex(d => (d.label || '').startsWith('volume')); return last + 1")
+            "const {commands, description} = inspector.panes[0];"
+            "return commands.findLastIndex(c => description.passes[c.pass].label.startsWith('step 3: volumes')) + 1")
         self.choose("buffer", "stencil")
         self.choose("wires", "command")
         self.go(volumes)
-        # A pixel with the most fragments of volumes round the picture's middle.
+        # The middle one of the pixels in the torus's shadow.
         self.run_script("""
-            const [pane] = inspector.panes, fates = inspector.engine.fates(0, ...pane.passRange(pane.command.pass));
-            let best = 0, most = -1;
-            for (let i = 0; i < fates.raised.length; ++i) if (fates.raised[i] + fates.lowered[i] > most) { most = fates.raised[i] + fates.lowered[i]; best = i; }
-            pane.view.pick(best % pane.view.width, Math.floor(best / pane.view.width));""")
+            const [pane] = inspector.panes, shadow = [];
+            pane.buffer.values.forEach((count, i) => { if (count > 0 && count < 128) shadow.push(i); });
+            const i = shadow[shadow.length >> 1];
+            pane.view.pick(i % pane.view.width, Math.floor(i / pane.view.width));""")
         self.screenshot("inspector")
         self.choose("wires", "none")
         self.choose("buffer", "color")
@@ -288,7 +289,14 @@ class LabPage(PageTest):
             "lab-acne": {"stage": "acne"},
         }
         for name, state in shots.items():
-            self.run_script("lab.hashesOf({format: 'gnomon-lab', version: 1, ...arguments[0]}); lab.view.pick(330, 170)", state)
+            # The middle one of the pixels where something was counted.
+            self.run_script("""
+                const {lab} = window;
+                lab.hashesOf({format: 'gnomon-lab', version: 1, ...arguments[0]});
+                const fates = lab.engine.fates(0, 0, 10 ** 6), {width} = lab.view, counted = [];
+                fates.raised.forEach((n, i) => { if (n > fates.lowered[i]) counted.push(i); });
+                const i = counted.length ? counted[counted.length >> 1] : 170 * width + 330;
+                lab.view.pick(i % width, Math.floor(i / width));""", state)
             self.run_script("document.getElementById('wires').checked = arguments[0]; document.getElementById('wires').dispatchEvent(new Event('change'))",
                             name in ("lab-cap", "lab-open"))
             self.wait("document.getElementById('hashes').textContent")

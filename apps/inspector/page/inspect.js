@@ -253,6 +253,7 @@
       const told = engine.history(pane.slot, pane.command.pass, x, y, pane.position);
       History.show(element("history"), told, pane.description, pane.commands, walkPass(pane), data.palette, (command) => go(command + 1));
       inspector.history = told;
+      element("history").scrollIntoView({ block: "start" });
     } catch (error) { fail(error); }
     document.body.dataset.historyMs = (performance.now() - started).toFixed(1);
   };
