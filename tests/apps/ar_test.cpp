@@ -154,6 +154,34 @@ TEST_F(Ar, AVideoFrameWithoutTagsKeepsItsPhotographAndIsCounted) {
   for (const std::uint8_t value : middle->image.pixels) ASSERT_NEAR(value, 90, 2);
 }
 
+// Oracle: the documented contract. The window is one that no screen shows.
+TEST_F(Ar, AVideoIsShownInAWindowWithOrWithoutAFile) {
+  {
+    const ar::Image photo = ar::read_image_rgb(kPhoto);
+    ar::VideoWriter writer(file("in.avi"), photo.width, photo.height, 12.0);
+    writer.write(photo);
+    writer.write(photo);
+    writer.close();
+  }
+  std::vector<std::string> arguments{"ar", kScene, "--video", file("in.avi"), "--samples", "1",
+                                     "--show"};
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"}) unsetenv(name);
+  expect_one_line_error(run(arguments), "--show: there is no display");
+  setenv("QT_QPA_PLATFORM", "offscreen", 1);
+  Outcome got = run(arguments);
+  EXPECT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("2 frames: 2 augmented"));
+  EXPECT_EQ(got.out.find("wrote"), std::string::npos);
+  arguments.insert(arguments.end(), {"--out", file("out")});
+  got = run(arguments);
+  EXPECT_EQ(got.status, 0) << got.err;
+  EXPECT_TRUE(fs::exists(file("out") + "/composite.avi"));
+  unsetenv("QT_QPA_PLATFORM");
+  expect_one_line_error(run({"ar", kScene, "--video", file("in.avi")}), "--out is needed");
+  expect_one_line_error(run({"ar", kScene, "--image", kPhoto, "--out", file("out"), "--show"}),
+                        "--show goes with");
+}
+
 // Oracle: the whole run.
 TEST_F(Ar, AVideoDrawnInPartsIsTheWholeOneToTheByte) {
   const ar::Image photo = ar::read_image_rgb(kPhoto);
