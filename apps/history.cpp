@@ -1,5 +1,6 @@
 // gnomon history: what happened at one pixel of a recorded frame.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -35,24 +36,21 @@ struct Options {
 
 std::string color_text(const raster::ColorBuffer& target, const glm::vec4& c) {
   if (target.format() == raster::ColorFormat::rgba32f)
-    return fmt::format("({:.4g} {:.4g} {:.4g} {:.4g})", c.r, c.g, c.b, c.a);
+    return fmt::format("({} {} {} {})", c.r, c.g, c.b, c.a);
   const auto byte = [](float v) { return std::lround(v * 255.0f); };
   return fmt::format("({} {} {} {})", byte(c.r), byte(c.g), byte(c.b), byte(c.a));
 }
 
-/// What changed, or what is there.
 std::string change_text(const raster::Targets& targets, const raster::PixelValues& before,
                         const raster::PixelValues& after) {
   std::string out;
-  const auto add = [&](const char* name, const std::string& a, const std::string& b) {
-    if (a != b) out += fmt::format("  {} {} -> {}", name, a, b);
-  };
-  if (targets.stencil)
-    add("stencil", std::to_string(before.stencil), std::to_string(after.stencil));
-  if (targets.depth) add("depth", std::to_string(before.depth), std::to_string(after.depth));
-  if (targets.color)
-    add("colour", color_text(*targets.color, before.color),
-        color_text(*targets.color, after.color));
+  if (targets.stencil && before.stencil != after.stencil)
+    out += fmt::format("  stencil {} -> {}", before.stencil, after.stencil);
+  if (targets.depth && before.depth != after.depth)
+    out += fmt::format("  depth {} -> {}", before.depth, after.depth);
+  if (targets.color && before.color != after.color)
+    out += fmt::format("  colour {} -> {}", color_text(*targets.color, before.color),
+                       color_text(*targets.color, after.color));
   return out.empty() ? "  nothing changes" : out;
 }
 
@@ -80,7 +78,7 @@ void print_text(const raster::Frame& frame, const raster::PixelHistory& told) {
       pass = record.pass;
       std::cout << fmt::format("pass {} {}\n", pass + 1, ar::one_line(frame.passes()[pass].label));
     }
-    const raster::Command& command = inspector::command_at(frame, record.command);
+    const raster::Command& command = *inspector::place_of(frame, record.command).command;
     std::cout << fmt::format("{:6} {:5} {}{}\n", record.command + 1, inspector::kind(command),
                              ar::one_line(std::string(inspector::label(command))),
                              change_text(targets, record.before, record.after));
@@ -92,7 +90,6 @@ void print_text(const raster::Frame& frame, const raster::PixelHistory& told) {
 }
 
 void print_around(const raster::Targets& targets, const Options& options) {
-  if (!targets.stencil) throw ar::InputError("--around: the pass has no stencil buffer");
   const raster::PixelBox box{std::max(options.x - options.around, 0),
                              std::max(options.y - options.around, 0),
                              std::min(options.x + options.around + 1, targets.width()),
@@ -104,6 +101,7 @@ void print_around(const raster::Targets& targets, const Options& options) {
 }
 
 void history(const Options& options) {
+  if (options.around > 0 && options.json) throw ar::InputError("--around: not with --json");
   const raster::RecordedFrame recorded = ar::read_frame(options.frame);
   const auto& passes = recorded.frame.passes();
   if (passes.empty()) throw ar::InputError(options.frame.string() + ": the frame has no pass");
@@ -116,6 +114,8 @@ void history(const Options& options) {
     throw ar::InputError(fmt::format("pixel {} {}: the buffers of pass {} have {}x{} pixels",
                                      options.x, options.y, pass + 1, targets.width(),
                                      targets.height()));
+  if (options.around > 0 && !targets.stencil)
+    throw ar::InputError(fmt::format("--around: pass {} has no stencil buffer", pass + 1));
   const raster::PixelHistory told =
       raster::history(recorded.frame, options.x, options.y,
                       {.pass = pass, .commands = options.commands, .threads = options.threads});

@@ -1,9 +1,13 @@
 // gnomon inspect: a page that shows a frame from the first command to the last.
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -12,6 +16,7 @@
 #include "apps/counting.h"
 #include "apps/inspector/page.h"
 #include "apps/output_folder.h"
+#include "apps/page_output.h"
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/frame_file.h"
@@ -42,7 +47,10 @@ bool is_frame(const fs::path& path) {
 
 PageFrame frame_of_file(const fs::path& path) {
   // Read as a frame, so that a page is made of nothing else.
-  return {path.filename().string(), raster::encode_frame(ar::read_frame(path).frame)};
+  const raster::RecordedFrame recorded = ar::read_frame(path);
+  if (recorded.frame.command_count() == 0)
+    throw ar::InputError(path.string() + ": the frame has no command");
+  return {path.filename().string(), raster::encode_frame(recorded.frame)};
 }
 
 PageFrame frame_of_photograph(const ar::SceneFile& scene, const Options& options,
@@ -77,11 +85,6 @@ PageFrame frame_of_scene(const ar::SceneFile& scene, const std::string& method) 
 }
 
 PageFrame frame_of(const Options& options, const std::string& method) {
-  if (is_frame(method)) return frame_of_file(method);
-  const auto known = {"", "zpass", "zfail", "auto", "differential"};
-  if (std::find(known.begin(), known.end(), method) == known.end())
-    throw ar::InputError("--compare: '" + ar::one_line(method) +
-                         "' is no method (zpass, zfail, auto, differential) and no frame file");
   if (is_frame(options.input)) {
     if (!method.empty())
       throw ar::InputError(options.input.string() +
@@ -95,21 +98,31 @@ PageFrame frame_of(const Options& options, const std::string& method) {
   return frame_of_scene(scene, method);
 }
 
-void inspect(const Options& options) {
+PageFrame compared_frame(const Options& options) {
+  constexpr std::array<std::string_view, 4> kMethods{"zpass", "zfail", "auto", "differential"};
+  if (std::ranges::count(kMethods, options.compare) > 0) return frame_of(options, options.compare);
+  if (is_frame(options.compare)) return frame_of_file(options.compare);
+  throw ar::InputError("--compare: '" + ar::one_line(options.compare) +
+                       "' is no method (zpass, zfail, auto, differential) and no frame file");
+}
+
+void check_arguments(const Options& options) {
+  if (options.image.empty() && (options.samples != 1 || !options.lit_scene.empty()))
+    throw ar::InputError("--samples and --lit-scene go with --image");
   if (!options.image.empty() && is_frame(options.input))
     throw ar::InputError("--image goes with a scene file; " + options.input.string() +
                          " is a frame");
-  for (const fs::path& input : {options.input, options.image, fs::path(options.compare)})
+  for (const fs::path& input :
+       {options.input, options.image, options.lit_scene, fs::path(options.compare)})
     refuse_to_replace(input, options.out);
-  const fs::path folder = options.out.has_parent_path() ? options.out.parent_path() : fs::path(".");
-  check_folder(folder);
+}
+
+void inspect(const Options& options) {
+  check_arguments(options);
+  check_page_folder(options.out);
   std::vector<PageFrame> frames{frame_of(options, options.method)};
-  if (!options.compare.empty()) frames.push_back(frame_of(options, options.compare));
-  const std::string page = inspector::inspect_page(options.input.filename().string(), frames);
-  make_folder(folder);
-  ar::write_file(options.out, page);
-  std::cout << fmt::format("wrote {} ({:.1f} MB)\n", options.out.string(),
-                           static_cast<double>(page.size()) * 1e-6);
+  if (!options.compare.empty()) frames.push_back(compared_frame(options));
+  write_page(options.out, inspector::inspect_page(options.input.filename().string(), frames));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -13,6 +14,7 @@
 #include "apps/inspector/lab_state.h"
 #include "apps/inspector/page.h"
 #include "apps/output_folder.h"
+#include "apps/page_output.h"
 #include "ar/buffer_picture.h"
 #include "ar/error.h"
 #include "ar/file.h"
@@ -60,21 +62,14 @@ void draw(const Options& options) {
     std::cout << golden::sentence(golden::hash_of(buffer)) << '\n';
 }
 
-void write_page(const fs::path& page) {
-  const fs::path folder = page.has_parent_path() ? page.parent_path() : fs::path(".");
-  check_folder(folder);
-  const std::string text = inspector::lab_page();
-  make_folder(folder);
-  ar::write_file(page, text);
-  std::cout << fmt::format("wrote {} ({:.1f} MB)\n", page.string(),
-                           static_cast<double>(text.size()) * 1e-6);
-}
-
 void lab(const Options& options) {
   if (options.page.empty() == options.state.empty())
     throw ar::InputError("lab: either a state or --page is needed");
-  if (!options.page.empty()) return write_page(options.page);
-  draw(options);
+  if (options.page.empty()) return draw(options);
+  if (!options.out.empty() || !options.save_frame.empty())
+    throw ar::InputError("lab: --out and --save-frame go with a state");
+  check_page_folder(options.page);
+  write_page(options.page, inspector::lab_page());
 }
 
 }  // namespace

@@ -9,8 +9,6 @@ namespace gnomon::apps {
 namespace {
 
 constexpr int kEscape = 27;
-/// Far more than a frame has; keeps a held key from counting without end.
-constexpr std::size_t kMostBack = 10'000;
 
 }  // namespace
 
@@ -39,7 +37,7 @@ void LiveView::press(int key) {
       if (back_ > 0) --back_;
       break;
     case 'p':
-      if (back_ < kMostBack) ++back_;
+      ++back_;
       break;
     case ' ':
       paused_ = !paused_;
@@ -56,14 +54,14 @@ void LiveView::press(int key) {
   }
 }
 
-std::size_t LiveView::pass_among(std::size_t count) const {
-  return count - 1 - std::min(back_, count - 1);
+void LiveView::see(std::size_t passes) {
+  if (passes > 0) back_ = std::min(back_, passes - 1);
 }
 
 const ar::Image& LiveView::picture(const ar::Image& composite,
                                    const std::vector<ar::PassPictures>& steps) const {
   if (buffer_ == Buffer::composite || steps.empty()) return composite;
-  const ar::PassPictures& step = steps[pass_among(steps.size())];
+  const ar::PassPictures& step = steps[steps.size() - 1 - back_];
   return buffer_ == Buffer::color   ? step.color
          : buffer_ == Buffer::depth ? step.depth
                                     : step.stencil;
@@ -75,7 +73,7 @@ std::string LiveView::caption(const std::vector<ar::PassPictures>& steps) const 
   const char* name = buffer_ == Buffer::color   ? "colour"
                      : buffer_ == Buffer::depth ? "depth"
                                                 : "stencil";
-  const std::size_t pass = pass_among(steps.size());
+  const std::size_t pass = steps.size() - 1 - back_;
   return fmt::format("{} after pass {} of {}: {}", name, pass + 1, steps.size(), steps[pass].label);
 }
 

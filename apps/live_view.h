@@ -25,16 +25,16 @@ class LiveView {
   bool ended() const { return ended_; }
   bool help() const { return help_; }
 
+  /// How many passes the picture has that comes next.
+  void see(std::size_t passes);
   /// Of the picture and what its passes left: the picture itself where there are no passes.
+  /// Precondition: see(steps.size()) came before.
   const ar::Image& picture(const ar::Image& composite,
                            const std::vector<ar::PassPictures>& steps) const;
-  /// "stencil after pass 3 of 7: step 2: ...".
+  /// As above: "stencil after pass 3 of 7: step 2: ...".
   std::string caption(const std::vector<ar::PassPictures>& steps) const;
 
  private:
-  /// The pass that is shown, among as many as there are.
-  std::size_t pass_among(std::size_t count) const;
-
   Buffer buffer_ = Buffer::composite;
   /// How many passes before the last one.
   std::size_t back_ = 0;

@@ -38,7 +38,9 @@ void write(cv::Mat& canvas, const std::string& line, int y) {
 
 LiveWindow::LiveWindow(const std::string& title) : title_("gnomon: " + title) {
   if (!has_display())
-    throw ar::InputError("--show: there is no display (DISPLAY and WAYLAND_DISPLAY are not set)");
+    throw ar::InputError(
+        "--show: there is no display (none of DISPLAY, WAYLAND_DISPLAY and QT_QPA_PLATFORM is "
+        "set)");
   try {
     cv::namedWindow(title_, cv::WINDOW_AUTOSIZE);
   } catch (const cv::Exception& error) {
@@ -80,6 +82,7 @@ bool LiveWindow::show(const ar::Image& composite, const ar::SessionResult& resul
   static const std::vector<ar::PassPictures> kNone;
   const auto& steps = result.augmented ? result.augmented->steps : kNone;
   do {
+    view_.see(steps.size());
     draw(composite, steps);
     const int key = cv::waitKey(view_.paused() ? 30 : 1);
     if (key >= 0) view_.press(key & 0xff);

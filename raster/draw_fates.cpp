@@ -11,14 +11,14 @@ void count(std::uint16_t& counter) {
   if (counter < 0xffff) ++counter;
 }
 
+/// Depths and stencils, which alone decide what becomes of fragments.
 std::vector<PixelValues> values_of(const Targets& targets) {
   std::vector<PixelValues> out;
   out.reserve(static_cast<std::size_t>(targets.width()) * targets.height());
   for (int y = 0; y < targets.height(); ++y)
     for (int x = 0; x < targets.width(); ++x)
-      out.push_back({targets.color ? targets.color->at(x, y) : glm::vec4(0.0f),
-                     targets.depth ? targets.depth->at(x, y) : 0,
-                     targets.stencil ? targets.stencil->at(x, y) : std::uint8_t{0}});
+      out.push_back({.depth = targets.depth ? targets.depth->at(x, y) : 0,
+                     .stencil = targets.stencil ? targets.stencil->at(x, y) : std::uint8_t{0}});
   return out;
 }
 
@@ -38,7 +38,7 @@ void add_fates(const Command& command, const Targets& targets, DrawFates& fates)
   std::vector<PixelValues> values = values_of(targets);
   trace.for_each_fragment({0, 0, fates.width, fates.height}, [&](const TracedFragment& fragment) {
     const std::size_t at = static_cast<std::size_t>(fragment.y) * fates.width + fragment.x;
-    const Outcome outcome = trace.apply(fragment, values[at]);
+    const Outcome outcome = trace.test(fragment, values[at]);
     count((outcome == Outcome::stencil_fail ? fates.stencil_failed
            : outcome == Outcome::depth_fail ? fates.depth_failed
                                             : fates.passed)[at]);

@@ -1,6 +1,7 @@
 #include "raster/history.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "raster/check.h"
@@ -48,6 +49,39 @@ class Pixel {
   std::vector<std::pair<const StencilBuffer*, std::uint8_t>> stencils_;
 };
 
+/// Buffers in groups: those of one pass belong together (a union-find forest).
+class LinkedBuffers {
+ public:
+  void link(const Targets& targets) {
+    const void* first = group_of(targets);
+    for (const void* buffer :
+         {static_cast<const void*>(targets.color), static_cast<const void*>(targets.depth),
+          static_cast<const void*>(targets.stencil)})
+      if (buffer) parents_[root_of(buffer)] = first;
+  }
+  /// One buffer that stands for the group of a pass's.
+  const void* group_of(const Targets& targets) {
+    return root_of(targets.color   ? static_cast<const void*>(targets.color)
+                   : targets.depth ? static_cast<const void*>(targets.depth)
+                                   : static_cast<const void*>(targets.stencil));
+  }
+
+ private:
+  const void* root_of(const void* buffer) {
+    const void** parent = &parents_.try_emplace(buffer, buffer).first->second;
+    while (*parent != buffer) {
+      const void** above = &parents_.at(*parent);
+      // Every other buffer on the way is hung higher.
+      *parent = *above;
+      buffer = *parent;
+      parent = &parents_.at(buffer);
+    }
+    return buffer;
+  }
+
+  std::map<const void*, const void*> parents_;
+};
+
 bool share(const Targets& a, const Targets& b) {
   return (a.color && a.color == b.color) || (a.depth && a.depth == b.depth) ||
          (a.stencil && a.stencil == b.stencil);
@@ -72,16 +106,17 @@ class Historian {
 
   PixelHistory run(const Targets& asked) {
     PixelHistory out{x_, y_, {}};
+    const std::vector<bool> followed = passes_linked_with(asked);
     // Whatever buffer a pass brings in is read before anything is drawn.
-    for (const Pass& pass : frame_.passes())
-      if (share(pass.targets, asked)) pixel_.read(pass.targets);
+    for (std::size_t p = 0; p < followed.size(); ++p)
+      if (followed[p]) pixel_.read(frame_.passes()[p].targets);
     std::size_t number = 0;
-    for (std::size_t p = 0; p < frame_.passes().size(); ++p) {
+    for (std::size_t p = 0; p < followed.size(); ++p) {
       const Pass& pass = frame_.passes()[p];
       const bool is_asked = share(pass.targets, asked);
       for (const Command& command : pass.commands) {
         if (number >= options_.commands) break;
-        if (is_asked) tell(pass, p, command, number, out);
+        if (followed[p]) follow(pass, p, command, number, is_asked, out);
         ++number;
       }
     }
@@ -90,14 +125,26 @@ class Historian {
   }
 
  private:
+  /// Those that share a buffer with the targets, or with a pass that does, and so on: what they
+  /// leave at the pixel may decide what is drawn into the targets.
+  std::vector<bool> passes_linked_with(const Targets& asked) const {
+    LinkedBuffers buffers;
+    for (const Pass& pass : frame_.passes()) buffers.link(pass.targets);
+    std::vector<bool> linked;
+    for (const Pass& pass : frame_.passes())
+      linked.push_back(buffers.group_of(pass.targets) == buffers.group_of(asked));
+    return linked;
+  }
+
   void execute_to(std::size_t command) {
     if (command <= executed_) return;
     execute(frame_, {.threads = options_.threads, .first_command = executed_, .commands = command});
     executed_ = command;
   }
 
-  void tell(const Pass& pass, std::size_t p, const Command& command, std::size_t number,
-            PixelHistory& out) {
+  /// Does to the pixel what the command does, and tells of it if it is asked about.
+  void follow(const Pass& pass, std::size_t p, const Command& command, std::size_t number,
+              bool is_asked, PixelHistory& out) {
     // A map may have been drawn by any command before.
     if (looks_up(command)) execute_to(number);
     CommandRecord record{.pass = p, .command = number, .before = pixel_.read(pass.targets)};
@@ -106,7 +153,7 @@ class Historian {
         std::visit([&](const auto& c) { return this->touch(c, pass.targets, record); }, command);
     if (!touched) return;
     pixel_.write(pass.targets, record.after);
-    out.commands.push_back(std::move(record));
+    if (is_asked) out.commands.push_back(std::move(record));
   }
 
   bool touch(const Clear& clear, const Targets& targets, CommandRecord& record) const {

@@ -26,15 +26,13 @@
 #include "raster/depth_ranges-inl.h"
 #include "raster/light_vertices-inl.h"
 #include "raster/lookup_bounds-inl.h"
-#if HWY_TARGET != HWY_WASM
-#include "raster/project-inl.h"
-#endif
-#if HWY_TARGET != HWY_WASM
-#include "raster/select_triangles-inl.h"
-#endif
 #include "raster/shade_blocks-inl.h"
 #include "raster/test_blocks-inl.h"
 #include "raster/transform-inl.h"
+#if HWY_TARGET != HWY_WASM
+#include "raster/project-inl.h"
+#include "raster/select_triangles-inl.h"
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace gnomon::raster {

@@ -1,5 +1,8 @@
 #include "raster/trace_draw.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "raster/blend.h"
 #include "raster/interpolate.h"
 #include "raster/kernels.h"

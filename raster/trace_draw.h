@@ -4,7 +4,6 @@
 // that execute() leaves.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 
@@ -41,12 +40,13 @@ class DrawTrace {
   /// What the pixel's values become. Depth buffers that the draw looks up hold what they held when
   /// it was drawn.
   Outcome apply(const TracedFragment& fragment, PixelValues& pixel) const;
+  /// The same without colour.
+  Outcome test(const TracedFragment& fragment, PixelValues& pixel) const;
 
   /// The stencil operation that a fragment with this outcome is given; keep without a stencil test.
   StencilOp stencil_op(bool front_facing, Outcome outcome) const;
 
  private:
-  Outcome test(const TracedFragment& fragment, PixelValues& pixel) const;
   const StencilFace* face(bool front_facing) const;
 
   const Draw& draw_;

@@ -44,6 +44,20 @@ std::optional<std::size_t> FrameBuffers::number_of(const void* buffer) const {
   return std::nullopt;
 }
 
+std::size_t FrameBuffers::bytes() const {
+  std::size_t sum = 0;
+  for (const BufferPointer& buffer : buffers_) {
+    const auto pixels = std::visit(
+        [](const auto* b) { return static_cast<std::size_t>(b->width()) * b->height(); }, buffer);
+    const auto* color = std::get_if<raster::ColorBuffer*>(&buffer);
+    const bool is_float = color && (*color)->format() == raster::ColorFormat::rgba32f;
+    sum += pixels * (std::holds_alternative<raster::StencilBuffer*>(buffer) ? 1
+                     : is_float                                             ? 16
+                                                                            : 4);
+  }
+  return sum;
+}
+
 std::vector<raster::Buffer> FrameBuffers::save() const {
   std::vector<raster::Buffer> out;
   for (const BufferPointer& buffer : buffers_)

@@ -24,6 +24,8 @@ class FrameBuffers {
   /// Nothing for null.
   std::optional<std::size_t> number_of(const void* buffer) const;
 
+  /// What a copy of their pixels takes.
+  std::size_t bytes() const;
   /// What they hold, and back.
   std::vector<raster::Buffer> save() const;
   void restore(const std::vector<raster::Buffer>& saved) const;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "apps/inspector/mesh_parts.h"
 #include "apps/inspector/state_names.h"
-#include "raster/check.h"
 
 namespace gnomon::apps::inspector {
 
@@ -160,13 +160,12 @@ ordered_json fragment_json(const raster::Draw& draw, const raster::Targets& targ
 
 }  // namespace
 
-const raster::Command& command_at(const raster::Frame& frame, std::size_t command) {
+Place place_of(const raster::Frame& frame, std::size_t command) {
   for (const raster::Pass& pass : frame.passes()) {
-    if (command < pass.commands.size()) return pass.commands[command];
+    if (command < pass.commands.size()) return {&pass, &pass.commands[command]};
     command -= pass.commands.size();
   }
-  raster::require(false, "a command is one of the frame's");
-  return frame.passes().front().commands.front();
+  throw std::invalid_argument("a command is one of the frame's");
 }
 
 ordered_json frame_json(const raster::Frame& frame, const FrameBuffers& buffers, bool in_brief) {
@@ -196,7 +195,7 @@ ordered_json frame_json(const raster::Frame& frame, const FrameBuffers& buffers,
 ordered_json history_json(const raster::Frame& frame, const raster::PixelHistory& history) {
   ordered_json commands = ordered_json::array();
   for (const raster::CommandRecord& record : history.commands) {
-    const raster::Command& command = command_at(frame, record.command);
+    const raster::Command& command = *place_of(frame, record.command).command;
     const raster::Targets& targets = frame.passes()[record.pass].targets;
     ordered_json out{{"pass", record.pass},
                      {"command", record.command},

@@ -23,7 +23,13 @@ nlohmann::ordered_json frame_json(const raster::Frame& frame, const FrameBuffers
 nlohmann::ordered_json history_json(const raster::Frame& frame,
                                     const raster::PixelHistory& history);
 
-/// The command of that number, counted from the frame's first one. Precondition: there is one.
-const raster::Command& command_at(const raster::Frame& frame, std::size_t command);
+/// A command and its pass.
+struct Place {
+  const raster::Pass* pass = nullptr;
+  const raster::Command* command = nullptr;
+};
+
+/// Of the command of that number, counted from the frame's first one. Misuse: there is none.
+Place place_of(const raster::Frame& frame, std::size_t command);
 
 }  // namespace gnomon::apps::inspector

@@ -13,14 +13,6 @@ namespace {
 /// Most that is kept to go back quickly, in bytes.
 constexpr std::size_t kSavedBytes = std::size_t{256} << 20;
 
-std::size_t bytes_of(const raster::Buffer& buffer) {
-  const auto pixels = std::visit(
-      [](const auto& b) { return static_cast<std::size_t>(b.width()) * b.height(); }, buffer);
-  if (std::holds_alternative<raster::StencilBuffer>(buffer)) return pixels;
-  const auto* color = std::get_if<raster::ColorBuffer>(&buffer);
-  return pixels * (color && color->format() == raster::ColorFormat::rgba32f ? 16 : 4);
-}
-
 std::string text_of(const nlohmann::ordered_json& json) {
   // A label is bytes; those that are no UTF-8 are replaced.
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -31,15 +23,6 @@ std::string text_of(const nlohmann::ordered_json& json) {
 Inspection::Inspection(std::shared_ptr<const void> owner, const raster::Frame& frame)
     : owner_(std::move(owner)), frame_(frame), buffers_(frame) {
   buffers_.reset();
-}
-
-Inspection::Place Inspection::at(std::size_t command) const {
-  for (const raster::Pass& pass : frame_.passes()) {
-    if (command < pass.commands.size()) return {&pass, &pass.commands[command]};
-    command -= pass.commands.size();
-  }
-  raster::require(false, "a command is one of the frame's");
-  return {};
 }
 
 bool Inspection::begins_pass(std::size_t command) const {
@@ -59,10 +42,8 @@ void Inspection::run_to(std::size_t commands) {
     position_ = stop;
     if (!begins_pass(position_) || (!saved_.empty() && saved_.back().commands >= position_))
       continue;
-    std::vector<raster::Buffer> now = buffers_.save();
-    std::size_t bytes = 0;
-    for (const raster::Buffer& buffer : now) bytes += bytes_of(buffer);
-    if (bytes * (saved_.size() + 1) <= kSavedBytes) saved_.push_back({position_, std::move(now)});
+    if (buffers_.bytes() * (saved_.size() + 1) <= kSavedBytes)
+      saved_.push_back({position_, buffers_.save()});
   }
 }
 
@@ -84,10 +65,10 @@ void Inspection::seek(std::size_t commands) {
 raster::DrawFates Inspection::fates(std::size_t first, std::size_t last) {
   last = std::min(last, frame_.command_count());
   raster::require(first < last, "fates are asked of one command or more");
-  const raster::Targets& targets = at(first).pass->targets;
+  const raster::Targets& targets = place_of(frame_, first).pass->targets;
   raster::DrawFates out(targets.width(), targets.height());
   for (std::size_t command = first; command < last; ++command) {
-    const Place place = at(command);
+    const Place place = place_of(frame_, command);
     if (place.pass->targets.width() != out.width || place.pass->targets.height() != out.height)
       continue;
     seek(command);
@@ -98,6 +79,10 @@ raster::DrawFates Inspection::fates(std::size_t first, std::size_t last) {
 }
 
 std::string Inspection::history(std::size_t pass, int x, int y, std::size_t commands) {
+  raster::require(pass < frame_.passes().size(), "a history's pass is one of the frame's");
+  const raster::Targets& targets = frame_.passes()[pass].targets;
+  raster::require(x >= 0 && y >= 0 && x < targets.width() && y < targets.height(),
+                  "a history's pixel lies inside its targets");
   const std::size_t back = position_;
   buffers_.reset();
   position_ = 0;
@@ -109,7 +94,7 @@ std::string Inspection::history(std::size_t pass, int x, int y, std::size_t comm
 }
 
 std::vector<WireEdge> Inspection::wires(std::size_t command) const {
-  const Place place = at(command);
+  const Place place = place_of(frame_, command);
   const auto* draw = std::get_if<raster::Draw>(place.command);
   return draw ? wireframe(*draw, place.pass->targets) : std::vector<WireEdge>();
 }

@@ -27,14 +27,14 @@ class Inspection {
   /// Brings the buffers to what the first so many commands leave.
   void seek(std::size_t commands);
 
-  /// Of the draws among commands [first, last), which go to targets of one size; others are left
-  /// out, as are draws to targets of another size. The position is `last` afterwards.
+  /// Of the draws among commands [first, last) that go to targets of the first one's size. The
+  /// position is `last` afterwards. Misuse: no such command.
   raster::DrawFates fates(std::size_t first, std::size_t last);
 
-  /// As JSON (history_json). The position stays.
+  /// As JSON (history_json). The position stays. Misuse: as raster::history.
   std::string history(std::size_t pass, int x, int y, std::size_t commands);
 
-  /// Of a draw; empty for others.
+  /// Of a draw; empty for others. Misuse: no such command.
   std::vector<WireEdge> wires(std::size_t command) const;
 
   /// As JSON (frame_json).
@@ -45,11 +45,6 @@ class Inspection {
     std::size_t commands;
     std::vector<raster::Buffer> buffers;
   };
-  struct Place {
-    const raster::Pass* pass;
-    const raster::Command* command;
-  };
-  Place at(std::size_t command) const;
   void run_to(std::size_t commands);
   bool begins_pass(std::size_t command) const;
 

@@ -1,5 +1,6 @@
 #include "apps/inspector/lab_state.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -14,6 +15,18 @@ namespace {
 
 constexpr std::string_view kFormat = "gnomon-lab";
 constexpr int kVersion = 1;
+/// Lists and objects in each other, of which a state has one.
+constexpr int kDeepest = 8;
+
+/// At least as deep as the text's lists and objects go; brackets inside of strings count too.
+int nesting(std::string_view json) {
+  int depth = 0, deepest = 0;
+  for (const char c : json) {
+    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+    if (c == ']' || c == '}') --depth;
+  }
+  return deepest;
+}
 
 constexpr std::array<std::string_view, 5> kStages{"camera-in-shadow", "missing-cap", "overflow",
                                                   "open-mesh", "acne"};
@@ -63,7 +76,10 @@ class Writer {
   ordered_json& out_;
 };
 
+/// Of a list or an object only what it is: its text is as deep as someone else made it.
 std::string text_of(const ordered_json& value) {
+  if (value.is_array()) return "a list";
+  if (value.is_object()) return "an object";
   return value.dump(-1, ' ', true, ordered_json::error_handler_t::replace).substr(0, 60);
 }
 
@@ -157,12 +173,13 @@ LabState starting_state(LabStage stage) {
 }
 
 LabState read_lab_state(std::string_view json) {
+  if (nesting(json) > kDeepest) throw LabError("this is no state: it is nested too deeply");
   ordered_json in = ordered_json::parse(json, nullptr, false);
   if (!in.is_object()) throw LabError("this is no JSON object");
-  if (in.value("format", ordered_json()) != kFormat)
-    throw LabError("'format' is not \"gnomon-lab\"");
-  if (in.value("version", ordered_json()) != kVersion)
-    throw LabError("'version' is " + text_of(in.value("version", ordered_json())) +
+  const auto format = in.find("format"), version = in.find("version");
+  if (format == in.end() || *format != kFormat) throw LabError("'format' is not \"gnomon-lab\"");
+  if (version == in.end() || *version != kVersion)
+    throw LabError("'version' is " + (version == in.end() ? "missing" : text_of(*version)) +
                    "; version 1 can be read");
   in.erase("format");
   in.erase("version");

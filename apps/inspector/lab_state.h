@@ -1,6 +1,6 @@
 // What a student sets in the lab: a stage, where camera, light and object are, and how shadows are
-// found. A state is a small JSON file, "gnomon-lab" version 1 (docs/lesson.md), so that a page and
-// the program draw the same bytes.
+// found. A state is a small JSON file, "gnomon-lab" version 1 (docs/inspector.md), so that a page
+// and the program draw the same bytes.
 #pragma once
 
 #include <stdexcept>

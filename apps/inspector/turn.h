@@ -8,7 +8,8 @@ struct Turn {
   double cosine = 1.0, sine = 0.0;
 };
 
-/// Of a finite angle; within 1e-15. Sums and products only, each rounded once in a written order.
+/// Of a finite angle; within 3e-15. Only operations that IEEE 754 rounds in one way, in a written
+/// order.
 Turn turn_of_degrees(double degrees);
 
 }  // namespace gnomon::apps::inspector

@@ -163,8 +163,8 @@ TEST_F(Ar, AVideoIsShownInAWindowWithOrWithoutAFile) {
     writer.write(photo);
     writer.close();
   }
-  std::vector<std::string> arguments{"ar", kScene, "--video", file("in.avi"), "--samples", "1",
-                                     "--show"};
+  std::vector<std::string> arguments{"ar",        kScene, "--video", file("in.avi"),
+                                     "--samples", "1",    "--show"};
   for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"}) unsetenv(name);
   expect_one_line_error(run(arguments), "--show: there is no display");
   setenv("QT_QPA_PLATFORM", "offscreen", 1);

@@ -196,6 +196,9 @@ TEST(LabState, ARefusalNamesTheFieldAndTheValue) {  // oracle: the documented co
             "'method' is \"rays\", not one of zpass, zfail, auto, map");
   EXPECT_EQ(with(R"(, "saturate": 1)"), "'saturate' is 1, not true or false");
   EXPECT_EQ(with(R"(, "colour": 1)"), "there is no field 'colour'");
+  EXPECT_EQ(with(R"(, "plates": [[1]])"), "'plates' is a list, not a whole number from 1 to 600");
+  EXPECT_EQ(error_of(std::string(60'000, '[')), "this is no state: it is nested too deeply");
+  EXPECT_EQ(error_of(R"({"format": "gnomon-lab"})"), "'version' is missing; version 1 can be read");
 }
 
 TEST(Turn, IsTheLibrarysToTheLastDigits) {  // oracle: std::cos and std::sin
@@ -294,9 +297,15 @@ TEST(LiveView, KeysChooseBufferAndPass) {  // oracle: the documented keys
   EXPECT_TRUE(view.wants_steps());
   EXPECT_THAT(view.picture(composite, steps).pixels, ElementsAre(6));
   EXPECT_EQ(view.caption(steps), "stencil after pass 2 of 2: two");
-  for (int i = 0; i < 5; ++i) view.press('p');
+  for (int i = 0; i < 5; ++i) {
+    view.press('p');
+    view.see(steps.size());
+  }
   view.press('d');
   EXPECT_THAT(view.picture(composite, steps).pixels, ElementsAre(2));
+  view.press('n');
+  view.see(steps.size());
+  EXPECT_THAT(view.picture(composite, steps).pixels, ElementsAre(5));
   EXPECT_EQ(view.picture(composite, {}).pixels, composite.pixels);
   view.press(' ');
   EXPECT_TRUE(view.paused());
@@ -324,9 +333,16 @@ TEST_F(History, RefusesWhatIsNotThere) {  // oracle: the documented contract
                         "pixel 4000 0: the buffers of pass 3");
   expect_one_line_error(run({"history", frame, "0", "0", "--pass", "9"}), "the frame has 3 passes");
   EXPECT_EQ(run({"history", frame, "0", "-1"}).status, 1);
+  expect_one_line_error(run({"history", frame, "0", "0", "--pass", "1", "--around", "2"}),
+                        "pass 1 has no stencil buffer");
+  expect_one_line_error(run({"history", frame, "0", "0", "--json", "--around", "2"}),
+                        "not with --json");
 }
 
 TEST_F(Inspect, WritesOnePageWithoutALinkToAnywhere) {  // oracle: the documented contract
+#ifndef GNOMON_HAS_PAGES
+  GTEST_SKIP() << "this build has no pages";
+#endif
   const std::string frame = kFrames / "boxes-zfail.frame";
   const Outcome made = run(
       {"inspect", frame, "--compare", kFrames / "boxes-zpass.frame", "--out", file("page.html")});
@@ -346,6 +362,7 @@ TEST_F(Inspect, RefusesWhatItCannotShow) {  // oracle: the documented contract
                         "'magic' is no method");
   expect_one_line_error(run({"inspect", frame, "--compare", "zpass", "--out", out}),
                         "a frame has its method already");
+  expect_one_line_error(run({"inspect", frame, "--samples", "2", "--out", out}), "go with --image");
   fs::copy_file(frame, file("own.frame"));
   EXPECT_EQ(run({"inspect", file("own.frame"), "--out", file("own.frame")}).status, 1);
   EXPECT_FALSE(fs::exists(out));
@@ -364,6 +381,8 @@ TEST_F(Lab, DrawsAStateThatWasSaved) {  // oracle: replay of the frame that it s
   std::ofstream(file("state.json")) << R"({"format": "gnomon-lab", "version": 1, "plates": 0})";
   expect_one_line_error(run({"lab", file("state.json")}), "'plates' is 0");
   expect_one_line_error(run({"lab"}), "either a state or --page");
+  expect_one_line_error(run({"lab", "--page", file("p.html"), "--out", file("out")}),
+                        "go with a state");
 }
 
 }  // namespace

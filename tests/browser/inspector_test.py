@@ -293,8 +293,13 @@ class LabPage(PageTest):
             self.run_script("""
                 const {lab} = window;
                 lab.hashesOf({format: 'gnomon-lab', version: 1, ...arguments[0]});
-                const fates = lab.engine.fates(0, 0, 10 ** 6), {width} = lab.view, counted = [];
-                fates.raised.forEach((n, i) => { if (n > fates.lowered[i]) counted.push(i); });
+                const {passes} = lab.engine.describe(0, true), {width} = lab.view, counted = [];
+                const counting = passes.findIndex((pass) => pass.label === 'shadow volumes');
+                if (counting >= 0) {
+                  const first = passes.slice(0, counting).reduce((n, pass) => n + pass.commands, 0);
+                  const fates = lab.engine.fates(0, first, first + passes[counting].commands);
+                  fates.raised.forEach((n, i) => { if (n > fates.lowered[i]) counted.push(i); });
+                }
                 const i = counted.length ? counted[counted.length >> 1] : 170 * width + 330;
                 lab.view.pick(i % width, Math.floor(i / width));""", state)
             self.run_script("document.getElementById('wires').checked = arguments[0]; document.getElementById('wires').dispatchEvent(new Event('change'))",

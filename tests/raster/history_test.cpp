@@ -139,6 +139,38 @@ TEST(History, LooksUpWhatWasDrawnBefore) {
   EXPECT_EQ(history(frame, 7, 7, {.pass = 0}).commands.at(0).after.depth, 0x400000u);
 }
 
+// Oracle: the buffers after each command. The passes' targets are linked through each other: the
+// second one shares nothing with the last, and decides what is drawn there.
+TEST(History, FollowsPassesThatAreLinkedThroughOthers) {
+  for (std::uint32_t seed = 100; seed < 130; ++seed) {
+    const auto record = [seed](random_frames::Targets& a, random_frames::Targets& b) {
+      Frame frame;
+      const std::array<Targets, 4> targets{
+          Targets{&b.color, &a.depth, &b.stencil}, Targets{&b.color, &b.depth, &b.stencil},
+          Targets{&b.color, &a.depth, &b.stencil}, Targets{&a.color, &a.depth, nullptr}};
+      for (std::uint32_t pass = 0; pass < 3; ++pass)
+        random_frames::record_pass(frame, seed + 1000 * pass, 8, targets[pass]);
+      frame.begin_pass("last", targets[3]);
+      State state;
+      state.depth = DepthState{.func = CompareFunc::less_equal};
+      small_frames::draw_positions(frame, state,
+                                   {{-1, -1, 0.2f, 1}, {3, -1, 0.2f, 1}, {-1, 3, 0.2f, 1}});
+      return frame;
+    };
+    random_frames::Targets a = targets_of(seed), b = targets_of(seed);
+    const PixelHistory told = history(record(a, b), 20, 30);
+    random_frames::Targets c = targets_of(seed), d = targets_of(seed);
+    const Frame frame = record(c, d);
+    std::size_t done = 0;
+    for (const CommandRecord& command : told.commands) {
+      execute(frame, {.first_command = done, .commands = command.command + 1});
+      done = command.command + 1;
+      EXPECT_EQ(command.after.depth, c.depth.at(20, 30))
+          << "seed " << seed << ", command " << command.command;
+    }
+  }
+}
+
 TEST(History, StopsBeforeACommand) {  // oracle: closed form
   StencilBuffer stencil(3, 3);
   Frame frame;

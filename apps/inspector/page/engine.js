@@ -5,12 +5,19 @@ class Engine {
   static async start(base64) {
     const engine = new Engine();
     const module = await WebAssembly.compile(Engine.bytesOf(base64));
-    const imports = { gnomon: { fail: (at, length) => { throw new Error(engine.text(at, length)); } } };
+    // An error leaves the module's functions where they are: the stack is as it was before any of them was called.
+    const fail = (at, length) => {
+      const text = engine.text(at, length);
+      engine.wasm.__stack_pointer.value = engine.stack;
+      throw new Error(text);
+    };
+    const imports = { gnomon: { fail } };
     // The C library asks for files, a clock and arguments; there are none.
     for (const { module: from, name } of WebAssembly.Module.imports(module))
       (imports[from] ||= {})[name] ||= () => 8;
     engine.wasm = (await WebAssembly.instantiate(module, imports)).exports;
     engine.wasm._initialize();
+    engine.stack = engine.wasm.__stack_pointer.value;
     return engine;
   }
 
@@ -25,6 +32,7 @@ class Engine {
   /// Calls f(address, size) with the bytes in the module's memory.
   lend(bytes, f) {
     const at = this.wasm.allocate(bytes.length);
+    if (!at) throw new Error(`there is no memory for ${bytes.length} bytes`);
     try {
       new Uint8Array(this.wasm.memory.buffer, at, bytes.length).set(bytes);
       return f(at, bytes.length);

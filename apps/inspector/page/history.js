@@ -11,45 +11,48 @@ const History = (() => {
   const opNames = { incr: "+1, stops at 255", incr_wrap: "+1", decr: "\u22121, stops at 0", decr_wrap: "\u22121", replace: "replaced", zero: "set to 0", invert: "inverted", keep: "kept" };
   const number = (v) => v === null ? "NaN" : Number.isInteger(v) ? String(v) : Number(v).toPrecision(4);
   const colorText = (c) => c.map(number).join(" ");
-  const swatch = (parent, c) => {
-    if (!c) return;
-    const whole = c.every(Number.isInteger), part = (v) => Math.round(Math.min(Math.max(whole ? v : v * 255, 0), 255));
+  /// isBytes: 0 to 255 a channel; otherwise 0 to 1.
+  const swatch = (parent, c, isBytes) => {
+    const part = (v) => Math.round(Math.min(Math.max(isBytes ? v : v * 255, 0), 255));
     const box = make("span", undefined, parent, "chip");
     box.style.background = `rgb(${c.slice(0, 3).map(part).join(" ")})`;
   };
-  const change = (parent, name, before, after) => {
+  const change = (parent, name, before, after, isBytes) => {
     if (before === undefined || JSON.stringify(before) === JSON.stringify(after)) return false;
     const line = make("span", `${name} `, parent, "change");
-    if (name === "colour") swatch(line, before);
+    if (name === "colour") swatch(line, before, isBytes);
     line.append(name === "colour" ? `${colorText(before)} \u2192 ` : `${before} \u2192 `);
-    if (name === "colour") swatch(line, after);
+    if (name === "colour") swatch(line, after, isBytes);
     line.append(name === "colour" ? colorText(after) : String(after));
     return true;
   };
-  const changes = (parent, before, after) => {
+  const changes = (parent, before, after, isBytes) => {
     const some = [change(parent, "stencil", before.stencil, after.stencil), change(parent, "depth", before.depth, after.depth),
-      change(parent, "colour", before.color, after.color)].some(Boolean);
+      change(parent, "colour", before.color, after.color, isBytes)].some(Boolean);
     if (!some) make("span", "nothing changes", parent, "quiet");
   };
 
   const counts = (op) => op.startsWith("incr") ? 1 : op.startsWith("decr") ? -1 : 0;
 
-  /// The counting fragments of one pass: those of draws where some operation on the stencil counts. stateOf(command): the draw.
-  const walkOf = (history, pass, stateOf) => {
-    const fragments = [];
-    let surface;
+  /// The fragments of one pass's last batch of counts: of draws with an operation that counts, since the stencil was last set
+  /// otherwise (a clear, or counts that became a flag). commands: of the frame, with their state.
+  const walkOf = (history, pass, commands) => {
+    let fragments = [], surface, bits = 255;
     for (const command of history.commands) {
-      if (command.pass !== pass || command.kind !== "draw") continue;
-      const stencil = stateOf(command.command).state.stencil;
-      if (!stencil || ![stencil.front, stencil.back].some((f) => counts(f.pass) || counts(f.depth_fail))) continue;
+      if (command.pass !== pass) continue;
+      const stencil = commands[command.command].state?.stencil;
+      if (!stencil || ![stencil.front, stencil.back].some((f) => counts(f.pass) || counts(f.depth_fail))) {
+        if (command.kind === "clear" || command.before.stencil !== command.after.stencil) fragments = [];
+        continue;
+      }
+      bits = stencil.front.write_mask;
       for (const f of command.fragments) {
         surface = f.before.depth ?? surface;
         fragments.push({ ...f, draw: command.label, count: counts(f.stencil_op) });
       }
     }
-    // At one depth, what is left is left before what is entered: the count between does not matter.
     fragments.sort((a, b) => a.depth - b.depth);
-    return { fragments, surface };
+    return { fragments, surface, bits };
   };
 
   const svg = (tag, attributes, parent, text) => {
@@ -62,14 +65,15 @@ const History = (() => {
 
   const drawWalk = (parent, { fragments, surface }) => {
     if (!fragments.length) return false;
-    const shown = fragments.slice(0, 400), stops = [...shown.map((f) => ({ depth: f.depth, f }))];
+    // More than so many cannot be told apart.
+    const shown = fragments.slice(0, 400), stops = shown.map((f) => ({ depth: f.depth, f }));
     let at = stops.findIndex((s) => s.depth >= surface);
     if (at < 0) at = stops.length;
     if (surface !== undefined) stops.splice(at, 0, { depth: surface, isSurface: true });
     const step = Math.max(26, Math.min(70, 600 / stops.length)), width = 70 + step * stops.length + 40, y = 74;
     const picture = svg("svg", { viewBox: `0 0 ${width} 150`, width, height: 150, role: "img", class: "walk" }, parent);
-    const front = shown.filter((f) => f.facing === "front" && f.depth < (surface ?? Infinity)).length;
-    const back = shown.filter((f) => f.facing === "back" && f.depth < (surface ?? Infinity)).length;
+    const front = fragments.filter((f) => f.facing === "front" && f.depth < (surface ?? Infinity)).length;
+    const back = fragments.filter((f) => f.facing === "back" && f.depth < (surface ?? Infinity)).length;
     svg("title", {}, picture, `The ray enters ${front} volumes and leaves ${back} before it meets the surface`);
     svg("text", { x: 8, y: y - 12, class: "label" }, picture, "eye");
     svg("circle", { cx: 20, cy: y, r: 6, class: "eye" }, picture);
@@ -97,14 +101,14 @@ const History = (() => {
     return true;
   };
 
-  const walkText = ({ fragments, surface }) => {
+  const walkText = ({ fragments, surface, bits }) => {
     const before = fragments.filter((f) => surface === undefined || f.depth < surface);
     const enters = before.filter((f) => f.facing === "front").length, sum = fragments.reduce((s, f) => s + f.count, 0);
     return `Before the surface the ray enters ${enters} and leaves ${before.length - enters}. What is counted adds up to ${sum} (` +
-      `${((sum % 256) + 256) % 256} in the stencil, if it wraps and began at 0).`;
+      `${sum & bits} in the stencil, if it wraps and began at 0).${fragments.length > 400 ? " The first 400 faces are drawn." : ""}`;
   };
 
-  const fragmentRow = (body, f, palette) => {
+  const fragmentRow = (body, f, palette, isBytes) => {
     const row = body.insertRow();
     row.className = f.outcome === "passed" ? "passed" : "failed";
     const cell = (text) => { const c = row.insertCell(); if (text !== undefined) c.textContent = text; return c; };
@@ -124,19 +128,21 @@ const History = (() => {
     }
     const color = cell();
     if (f.before.color && JSON.stringify(f.before.color) !== JSON.stringify(f.after.color)) {
-      swatch(color, f.before.color);
+      swatch(color, f.before.color, isBytes);
       color.append(" \u2192 ");
-      swatch(color, f.after.color);
+      swatch(color, f.after.color, isBytes);
       color.append(colorText(f.after.color));
     }
   };
 
-  /// Fills a box. description: of the frame; pass: whose walk is drawn; onCommand(command): a command was chosen.
-  const show = (box, history, description, commands, pass, palette, onCommand) => {
+  /// Fills a box. description: of the frame; pass: whose walk is drawn; upTo: the command that the history ends at;
+  /// onCommand(command), if given: a command was chosen.
+  const show = (box, history, description, pass, palette, { upTo, onCommand } = {}) => {
     box.replaceChildren();
-    make("h2", `Pixel ${history.x}, ${history.y}`, box);
+    const commands = description.passes.flatMap((p) => p.commands);
+    make("h2", `Pixel ${history.x}, ${history.y}${upTo ? ` up to command ${upTo}` : ""}`, box);
     make("p", `From the bottom left, as in OpenGL. ${history.commands.length} commands touched it.`, box, "quiet");
-    const walk = walkOf(history, pass, (command) => commands[command]);
+    const walk = walkOf(history, pass, commands);
     const walkBox = make("div", undefined, box, "walkbox");
     walkBox.tabIndex = 0;
     if (drawWalk(walkBox, walk)) make("p", walkText(walk), box);
@@ -146,16 +152,17 @@ const History = (() => {
       if (command.pass !== last) make("h3", description.passes[command.pass].label, box);
       last = command.pass;
       const item = make("section", undefined, box, "touched");
-      const head = make("button", `${command.command + 1} ${command.kind} ${command.label}`, item);
-      head.addEventListener("click", () => onCommand(command.command));
+      const head = make(onCommand ? "button" : "strong", `${command.command + 1} ${command.kind} ${command.label}`, item);
+      if (onCommand) head.addEventListener("click", () => onCommand(command.command));
+      const isBytes = description.buffers[description.passes[command.pass].targets.color]?.format === "rgba8";
       const line = make("p", undefined, item);
-      changes(line, command.before, command.after);
+      changes(line, command.before, command.after, isBytes);
       if (!command.fragments) continue;
       const table = make("table", undefined, item), body = table.createTBody();
       const headRow = table.createTHead().insertRow();
       for (const name of ["triangle", "face", "depth / stored", "outcome", "stencil", "colour"]) make("th", name, headRow).scope = "col";
-      for (const f of command.fragments) fragmentRow(body, f, palette);
+      for (const f of command.fragments) fragmentRow(body, f, palette, isBytes);
     }
   };
-  return { show, walkOf, make };
+  return { show, make };
 })();

@@ -5,8 +5,8 @@
   const data = JSON.parse(element("data").textContent);
   const make = History.make;
   const fail = (error) => {
-    element("error").textContent = String(error.message || error);
-    element("error").hidden = false;
+    element("error").textContent = error ? String(error.message || error) : "";
+    element("error").hidden = !error;
   };
   const started = performance.now();
   const engine = await Engine.start(element("engine").textContent).catch((error) => { fail(error); throw error; });
@@ -18,6 +18,8 @@
       engine.load(slot, Engine.bytesOf(frame.bytes));
       this.description = engine.describe(slot);
       this.commands = this.description.passes.flatMap((pass, p) => pass.commands.map((command) => ({ ...command, pass: p })));
+      this.ends = [];
+      for (const pass of this.description.passes) this.ends.push((this.ends.at(-1) || 0) + pass.commands.length);
       this.position = this.commands.length;
       this.build(frame.name);
     }
@@ -52,15 +54,14 @@
     }
     get command() { return this.commands[this.position - 1]; }
     get pass() { return this.description.passes[this.command.pass]; }
-    passRange(p) {
-      const first = this.commands.findIndex((c) => c.pass === p);
-      return [first, first + this.description.passes[p].commands.length];
-    }
+    /// The first command of a pass and the one behind its last.
+    passRange(p) { return [this.ends[p - 1] || 0, this.ends[p]]; }
     /// The buffer that is shown: of the pass's targets the kind that was chosen, or a buffer by its number.
     shown() {
       const choice = element("buffer").value;
-      if (choice.startsWith("#")) return Number(choice.slice(1));
-      const { targets } = this.pass;
+      const number = Number(choice.slice(1)), { targets } = this.pass;
+      // The buffers are listed as the first frame has them.
+      if (choice.startsWith("#") && this.description.buffers[number]?.kind === panes[0].description.buffers[number].kind) return number;
       return targets[choice] ?? targets.color ?? targets.depth ?? targets.stencil;
     }
     read() {
@@ -155,57 +156,35 @@
     const layer = element("overlay").value, whole = element("scope").value === "pass";
     const range = whole ? pane.passRange(pane.command.pass) : [pane.position - 1, pane.position];
     if (layer === "none") return null;
+    const shown = pane.buffer, step = shown.kind === "color" ? 4 : 1;
+    /// Of pixel i in two sets of values.
+    const differ = (a, b) => (i) => { for (let k = 0; k < step; ++k) if (a[i * step + k] !== b[i * step + k]) return true; return false; };
     if (layer === "differs") {
-      const other = panes.find((p) => p !== pane);
-      if (!other || other.buffer.kind !== pane.buffer.kind || other.buffer.values.length !== pane.buffer.values.length) return null;
-      const step = pane.buffer.kind === "color" ? 4 : 1, a = pane.buffer.values, b = other.buffer.values;
-      const differs = (i) => { for (let k = 0; k < step; ++k) if (a[i * step + k] !== b[i * step + k]) return true; return false; };
-      return { color: (i) => differs(i) ? [213, 94, 0, 230] : [255, 255, 255, 140], note: (i) => differs(i) ? "differs" : "the same" };
+      const other = panes.find((p) => p !== pane).buffer;
+      if (["kind", "format", "width", "height"].some((field) => other[field] !== shown[field])) return unable("the two buffers are not of one format and size");
+      return marked(differ(shown.values, other.values), [213, 94, 0, 230], "differs", "the same");
     }
     if (layer === "changed") {
-      const read = (position) => { engine.seek(pane.slot, position); return engine.buffer(pane.slot, pane.buffer.number, pane.buffer.kind).slice(); };
-      const a = read(range[0]), b = read(range[1]), step = pane.buffer.kind === "color" ? 4 : 1;
-      const differs = (i) => { for (let k = 0; k < step; ++k) if (a[i * step + k] !== b[i * step + k]) return true; return false; };
-      return { color: (i) => differs(i) ? [230, 159, 0, 220] : [255, 255, 255, 140], note: (i) => differs(i) ? "changed" : "unchanged" };
+      const read = (position) => { engine.seek(pane.slot, position); return engine.buffer(pane.slot, shown.number, shown.kind).slice(); };
+      return marked(differ(read(range[0]), read(range[1])), [230, 159, 0, 220], "changed", "unchanged");
     }
-    const size = pane.pass.size, shown = pane.buffer;
-    if (size[0] !== shown.width || size[1] !== shown.height) return null;
+    const [width, height] = pane.pass.size;
+    if (width !== shown.width || height !== shown.height) return unable("this buffer is not of the pass's size");
     const fates = engine.fates(pane.slot, ...range);
-    const shade = (n) => 130 + Math.min(n, 5) * 25;
-    const mixed = (good, bad, goodColor, badColor, both) => (i) => good[i] && bad[i] ? [...both, 220] : good[i] ? [...goodColor, shade(good[i])] : bad[i] ? [...badColor, shade(bad[i])] : [255, 255, 255, 110];
-    const blue = [0, 114, 178], orange = [213, 94, 0], violet = [204, 121, 167];
-    if (layer === "counts")
-      return { color: mixed(fates.raised, fates.lowered, blue, orange, violet), note: (i) => `INCR ${fates.raised[i]}, DECR ${fates.lowered[i]}, together ${fates.raised[i] - fates.lowered[i]}`, legend: [[blue, "INCR"], [orange, "DECR"], [violet, "both"]] };
-    const failed = layer === "depth" ? fates.depthFailed : fates.stencilFailed;
-    // What failed the stencil test never came to the depth test; what failed either is not drawn.
-    const passed = layer === "depth" ? fates.passed : fates.passed.map((n, i) => n + fates.depthFailed[i]);
-    return { color: mixed(passed, failed, blue, orange, violet), note: (i) => `passed ${passed[i]}, failed ${failed[i]}`, legend: [[blue, "passed"], [orange, "failed"], [violet, "both"]] };
+    if (layer === "counts") return twoCounts(fates.raised, fates.lowered, "INCR", "DECR");
+    if (layer === "depth") return twoCounts(fates.passed, fates.depthFailed, "passed", "failed");
+    // What failed the depth test had passed the stencil test.
+    return twoCounts(fates.passed.map((n, i) => n + fates.depthFailed[i]), fates.stencilFailed, "passed", "failed");
   };
+  /// In a layer's place, why there is none.
+  const unable = (why) => ({ color: null, note: () => why, legend: [[[255, 255, 255], why]] });
 
   const wiresOf = (pane) => {
     const choice = element("wires").value;
     if (choice === "none") return null;
     const range = choice === "pass" ? pane.passRange(pane.command.pass) : [pane.position - 1, pane.position], all = [];
     for (let i = range[0]; i < range[1]; ++i) if (pane.commands[i].kind === "draw") all.push(engine.wires(pane.slot, i));
-    const out = new Int32Array(all.reduce((n, w) => n + w.length, 0));
-    let at = 0;
-    for (const wires of all) { out.set(wires, at); at += wires.length; }
-    return out;
-  };
-
-  const legend = (pane, overlay) => {
-    const box = pane.legend;
-    box.replaceChildren();
-    const add = (color, text) => {
-      const item = make("span", undefined, box);
-      make("span", undefined, item, "chip").style.background = `rgb(${color.join(" ")})`;
-      item.append(text);
-    };
-    if (overlay?.legend) for (const [color, text] of overlay.legend) add(color, text);
-    if (pane.buffer.kind !== "stencil") return;
-    const pixels = new Array(256).fill(0);
-    for (const value of pane.buffer.values) ++pixels[value];
-    pixels.forEach((n, value) => { if (n) add(data.palette[value], `${value}${value >= 128 ? ` (${value - 256})` : ""}: ${n} px`); });
+    return joined(all);
   };
 
   const refresh = () => {
@@ -216,9 +195,11 @@
         const overlay = overlayOf(pane);
         pane.view.setOverlay(overlay?.color, overlay?.note);
         pane.view.setWires(wiresOf(pane));
-        legend(pane, overlay);
+        showLegend(pane.legend, pane.view, overlay, data.palette);
       }
+      fail(null);
     } catch (error) {
+      if (playing) play();
       fail(error);
       throw error;
     }
@@ -228,11 +209,13 @@
     document.body.dataset.refreshMs = (performance.now() - start).toFixed(1);
   };
 
-  /// The place in another frame that has the same pass's label: the same command of it, or its last one.
+  /// The place in another frame whose pass has the same label, the third one if it is the third one here: the same command of
+  /// it, or its last one.
   const samePlace = (from, to) => {
     const [first] = from.passRange(from.command.pass), inside = from.position - 1 - first, { label } = from.pass;
-    const p = to.description.passes.findIndex((pass) => pass.label === label);
-    if (p < 0) return;
+    const alike = (passes) => passes.map((pass, p) => p).filter((p) => passes[p].label === label && passes[p].commands.length);
+    const p = alike(to.description.passes)[alike(from.description.passes).indexOf(from.command.pass)];
+    if (p === undefined) return;
     const [begin, end] = to.passRange(p), last = inside === from.pass.commands.length - 1;
     to.position = last ? end : Math.min(begin + inside + 1, end);
   };
@@ -242,20 +225,28 @@
     refresh();
   };
   const goPass = (step) => {
-    const p = Math.min(Math.max(active.command.pass + step, 0), active.description.passes.length - 1);
-    go(active.passRange(p)[1]);
+    const { passes } = active.description;
+    for (let p = active.command.pass + step; p >= 0 && p < passes.length; p += step)
+      if (passes[p].commands.length) return go(active.passRange(p)[1]);
   };
 
   const tell = (x, y) => {
-    const started = performance.now(), pane = active;
+    const asked = performance.now(), pane = active;
     for (const other of panes) if (other !== pane) { other.view.picked = { x, y }; other.view.draw(); }
     try {
-      const told = engine.history(pane.slot, pane.command.pass, x, y, pane.position);
-      History.show(element("history"), told, pane.description, pane.commands, walkPass(pane), data.palette, (command) => go(command + 1));
+      const told = engine.history(pane.slot, passOf(pane, pane.buffer.number), x, y, pane.position);
+      History.show(element("history"), told, pane.description, walkPass(pane), data.palette,
+        { upTo: pane.position, onCommand: (command) => { activate(pane); go(command + 1); } });
       inspector.history = told;
       element("history").scrollIntoView({ block: "start" });
     } catch (error) { fail(error); }
-    document.body.dataset.historyMs = (performance.now() - started).toFixed(1);
+    document.body.dataset.historyMs = (performance.now() - asked).toFixed(1);
+  };
+  /// The last pass up to the place that goes to the buffer.
+  const passOf = (pane, buffer) => {
+    for (let p = pane.command.pass; p >= 0; --p)
+      if (Object.values(pane.description.passes[p].targets).includes(buffer)) return p;
+    throw new Error("nothing up to this command goes to this buffer");
   };
   /// The last pass up to the one looked at that counts.
   const walkPass = (pane) => {
@@ -271,6 +262,7 @@
     const box = element("status"), i = y * pane.view.width + x, { buffer } = pane;
     if (!buffer || x >= buffer.width || y >= buffer.height) return;
     const parts = [`pixel ${x}, ${y}`, `${buffer.kind} ${buffer.format}: ${pane.view.valueText(x, y)}`];
+    if (buffer.format === "rgba32f") parts.push("floats, shown as bytes");
     if (buffer.kind === "depth") parts.push((pane.view.values[i] / buffer.farthest).toFixed(7));
     if (pane.view.layers.overlay?.note) parts.push(pane.view.layers.overlay.note(i));
     parts.push(`${buffer.width}\u00d7${buffer.height}`);
@@ -297,7 +289,7 @@
   };
   const nextOf = (id) => {
     const box = element(id);
-    do box.selectedIndex = (box.selectedIndex + 1) % box.options.length; while (box.options[box.selectedIndex].hidden);
+    box.selectedIndex = (box.selectedIndex + 1) % box.options.length;
     refresh();
   };
   const choose = (kind) => { element("buffer").value = kind; refresh(); };
@@ -308,7 +300,7 @@
     x: () => activate(panes[(panes.indexOf(active) + 1) % panes.length]),
   };
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches("select, dialog *")) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, dialog")) return;
     const act = keys[event.key];
     if (!act) return;
     event.preventDefault();
@@ -329,7 +321,7 @@
   document.title = `${data.title} - gnomon inspect`;
   const compares = data.frames.length > 1;
   element("linkbox").hidden = !compares;
-  element("overlay").querySelector("[value=differs]").hidden = !compares;
+  if (!compares) element("overlay").querySelector("[value=differs]").remove();
   window.inspector = { engine, panes, go, history: null };
   try {
     data.frames.forEach((frame, slot) => panes.push(new Pane(slot, frame)));

@@ -11,6 +11,7 @@
   const engine = await Engine.start(element("engine").textContent).catch((error) => { fail(error); throw error; });
   const slot = 0;
   let state = {}, description = null, count = 0, picked = null;
+  const hint = element("history").firstElementChild;
 
   const stories = {
     "camera-in-shadow": ["The camera in the shadow", "A box throws its shadow on the floor. Tilt the camera and bring it near until it stands in the shadow, with z-pass, then with z-fail: who counts from where?"],
@@ -22,7 +23,7 @@
   const controls = [
     { legend: "Scene", items: [
       { name: "stage", label: "stage", options: Object.entries(stories).map(([value, [text]]) => [value, text]) },
-      { name: "plates", label: "plates", range: [1, 400, 1], when: (s) => s.stage === "overflow" }] },
+      { name: "plates", label: "plates", range: [1, 600, 1], when: (s) => s.stage === "overflow" }] },
     { legend: "Shadows", items: [
       { name: "method", label: "method", options: [["zpass", "z-pass"], ["zfail", "z-fail"], ["auto", "automatic"], ["map", "shadow map"]] },
       { name: "saturate", label: "counts stop at 0 and 255 (saturate)", when: (s) => s.method !== "map" },
@@ -37,7 +38,7 @@
       { name: "depth_16_bits", label: "depth of 16 bits" }] },
     { legend: "Camera", items: [
       { name: "camera_turn_deg", label: "turn", range: [-180, 180, 1], unit: "\u00b0" },
-      { name: "camera_tilt_deg", label: "tilt", range: [-15, 89, 0.5], unit: "\u00b0" },
+      { name: "camera_tilt_deg", label: "tilt", range: [-20, 89, 0.5], unit: "\u00b0" },
       { name: "camera_distance_m", label: "distance", range: [0.2, 14, 0.05], unit: "m" }] },
     { legend: "Lamp", items: ["x", "y", "z"].map((axis) => ({ name: `light_${axis}_m`, label: axis, range: axis === "y" ? [0.05, 10, 0.05] : [-5, 5, 0.05], unit: "m" })) },
     { legend: "Object", items: [
@@ -75,18 +76,24 @@
     }
   };
   const change = (item, input) => {
-    if (item.name === "stage") return set({ stage: input.value });
+    if (item.name === "stage") {
+      try {
+        set({ format: "gnomon-lab", version: 1, stage: input.value });
+        request();
+      } catch (error) { fail(error); }
+      return;
+    }
     state[item.name] = input.type === "checkbox" ? input.checked : item.range || item.name === "map_size" ? Number(input.value) : input.value;
     request();
   };
   /// A state with the stage's own values where it says nothing.
   const set = (fields) => {
     const before = state;
-    state = { format: "gnomon-lab", version: 1, ...fields };
-    picked = null;
-    view.picked = null;
+    state = fields;
     try {
       drawNow();
+      picked = view.picked = null;
+      element("history").replaceChildren(hint);
     } catch (error) {
       state = before;
       throw error;
@@ -94,6 +101,7 @@
   };
   const showControls = () => {
     for (const { item, input, label } of inputs) {
+      if (item.options && ![...input.options].some((o) => o.value === String(state[item.name]))) input.add(new Option(state[item.name]));
       if (input.type === "checkbox") input.checked = state[item.name];
       else if (document.activeElement !== input || item.options) input.value = state[item.name];
       if (item.output) item.output.textContent = `${Number(state[item.name].toFixed(2))} ${item.unit || ""}`;
@@ -135,7 +143,6 @@
     const b = execute();
     // A copy: the module's memory is used again.
     view.show(b.kind, b.values.slice(), b.width, b.height, b.farthest);
-    view.buffer = b;
     const ms = performance.now() - start;
     times.push(ms);
     if (times.length > 20) times.shift();
@@ -145,50 +152,40 @@
     fail(null);
     return ms;
   };
+  let layersMs = 0;
   const layers = () => {
+    const start = performance.now();
     const counting = passNamed("shadow volumes"), layer = element("layer").value;
-    const legend = element("legend");
-    legend.replaceChildren();
-    const add = (color, text) => {
-      const item = make("span", undefined, legend);
-      make("span", undefined, item, "chip").style.background = `rgb(${color.join(" ")})`;
-      item.append(text);
-    };
     let overlay = null, wires = null;
     if (counting >= 0 && element("wires").checked && element("show").value !== "map") {
       const all = [], [first, last] = rangeOf(counting);
       // The wires of very many volumes hide everything.
       for (let i = first; i < Math.min(last, first + 40); ++i) all.push(engine.wires(slot, i));
-      wires = Int32Array.from(all.flatMap((edges) => [...edges]));
+      wires = joined(all);
     }
     if (counting >= 0 && layer !== "none" && element("show").value !== "map") {
       const fates = engine.fates(slot, ...rangeOf(counting));
       const [up, down, names] = layer === "counts" ? [fates.raised, fates.lowered, ["INCR", "DECR"]] : [fates.passed, fates.depthFailed, ["passed", "failed"]];
-      const blue = [0, 114, 178], orange = [213, 94, 0], violet = [204, 121, 167];
-      overlay = { color: (i) => up[i] && down[i] ? [...violet, 220] : up[i] ? [...blue, 200] : down[i] ? [...orange, 200] : [255, 255, 255, 110],
-        note: (i) => `${names[0]} ${up[i]}, ${names[1]} ${down[i]}` };
-      add(blue, names[0]);
-      add(orange, names[1]);
-      add(violet, "both");
+      overlay = twoCounts(up, down, ...names);
     }
     view.setOverlay(overlay?.color, overlay?.note);
     view.setWires(wires);
-    if (view.kind === "stencil") {
-      const pixels = new Array(256).fill(0);
-      for (const value of view.values) ++pixels[value];
-      pixels.forEach((n, value) => { if (n) add(data.palette[value], `${value}${value >= 128 ? ` (${value - 256})` : ""}: ${n} px`); });
-    }
+    showLegend(element("legend"), view, overlay, data.palette);
+    layersMs = performance.now() - start;
   };
   /// What takes longer than a frame, once the hand rests.
   let resting = null;
   const rest = () => {
     clearTimeout(resting);
     resting = setTimeout(() => {
-      engine.seek(slot, count);
-      element("hashes").textContent = engine.hashes(slot).join("\n");
-      if (picked) tell(picked.x, picked.y);
-      status(view.cursor.x, view.cursor.y);
-    }, 120);
+      try {
+        layers();
+        engine.seek(slot, count);
+        element("hashes").textContent = engine.hashes(slot).join("\n");
+        if (picked) tell(picked.x, picked.y);
+        status(view.cursor.x, view.cursor.y);
+      } catch (error) { fail(error); }
+    }, 60);
   };
   let requested = false;
   const request = () => {
@@ -198,7 +195,12 @@
       requested = false;
       try {
         drawNow();
-        layers();
+        // Layers follow the hand where they are quick.
+        if (layersMs < 30) layers();
+        else {
+          view.setOverlay(null);
+          view.setWires(null);
+        }
         rest();
       } catch (error) { fail(error); }
     });
@@ -209,8 +211,7 @@
     const counting = passNamed("shadow volumes");
     try {
       const told = engine.history(slot, 0, x, y, count), whole = engine.describe(slot);
-      const commands = whole.passes.flatMap((pass) => pass.commands);
-      History.show(element("history"), told, whole, commands, Math.max(counting, 0), data.palette, () => {});
+      History.show(element("history"), told, whole, Math.max(counting, 0), data.palette);
       lab.history = told;
     } catch (error) { fail(error); }
   };
@@ -238,6 +239,7 @@
     const [file] = element("file").files;
     if (!file) return;
     try {
+      if (file.size > 65536) throw new Error("a state has 65,536 bytes at most");
       set(JSON.parse(await file.text()));
       request();
     } catch (error) { fail(`${file.name}: ${error.message}`); }
@@ -253,7 +255,7 @@
     h: () => element("helpbox").showModal(),
   };
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches("select, dialog *") || !keys[event.key]) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, dialog") || !keys[event.key]) return;
     event.preventDefault();
     keys[event.key]();
   });
@@ -279,7 +281,7 @@
     },
   };
   build();
-  set({ stage: "camera-in-shadow" });
+  set({ format: "gnomon-lab", version: 1, stage: "camera-in-shadow" });
   request();
   document.body.dataset.ready = "yes";
 })();

@@ -112,11 +112,6 @@ class View {
     this.zoom(factor, x, y);
     this.reveal();
   }
-  /// The same part of the picture as another view shows.
-  follow(other) {
-    Object.assign(this, { scale: other.scale, left: other.left, top: other.top, cursor: { ...other.cursor } });
-    this.draw();
-  }
 
   /// Where window coordinates lie on the canvas.
   cornerOf(x, y) { return { x: this.left + x * this.scale, y: this.top + (this.height - y) * this.scale }; }
@@ -155,6 +150,7 @@ class View {
     const { canvas } = this;
     let drag = null;
     canvas.addEventListener("pointerdown", (event) => {
+      if (event.button) return;
       drag = { x: event.clientX, y: event.clientY, left: this.left, top: this.top, moved: false };
       canvas.setPointerCapture(event.pointerId);
     });
@@ -172,8 +168,10 @@ class View {
       this.top = drag.top + dy * ratio;
       this.draw();
     });
+    canvas.addEventListener("pointercancel", () => { drag = null; });
     canvas.addEventListener("pointerup", (event) => {
-      const at = this.pixelAt(event), wasDrag = drag?.moved;
+      if (!drag) return;
+      const at = this.pixelAt(event), wasDrag = drag.moved;
       drag = null;
       if (!wasDrag && at.inside) this.pick(at.x, at.y);
     });
@@ -183,6 +181,7 @@ class View {
       this.zoom(Math.pow(1.0015, -event.deltaY), (event.clientX - box.left) * ratio, (event.clientY - box.top) * ratio);
     }, { passive: false });
     canvas.addEventListener("keydown", (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
       const step = event.shiftKey ? 10 : 1, move = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
       if (move) this.moveTo(this.cursor.x + move[0] * step, this.cursor.y + move[1] * step);
       else if (event.key === "Enter" || event.key === " ") this.pick(this.cursor.x, this.cursor.y);
@@ -287,3 +286,45 @@ class View {
     }
   }
 }
+
+/// A layer of two counts a pixel: the one blue, the other orange, both violet (Okabe and Ito 2008).
+const twoCounts = (up, down, upName, downName) => {
+  const blue = [0, 114, 178], orange = [213, 94, 0], violet = [204, 121, 167], shade = (n) => 130 + Math.min(n, 5) * 25;
+  return {
+    color: (i) => up[i] && down[i] ? [...violet, 220] : up[i] ? [...blue, shade(up[i])] : down[i] ? [...orange, shade(down[i])] : [255, 255, 255, 110],
+    note: (i) => `${upName} ${up[i]}, ${downName} ${down[i]}`,
+    legend: [[blue, upName], [orange, downName], [violet, "both"]],
+  };
+};
+
+/// A layer of pixels that have something or not.
+const marked = (has, color, name, otherName) => ({
+  color: (i) => has(i) ? color : [255, 255, 255, 140],
+  note: (i) => has(i) ? name : otherName,
+  legend: [[color.slice(0, 3), name]],
+});
+
+/// The colours of a layer, and of a stencil buffer each value with its pixels.
+const showLegend = (box, view, overlay, palette) => {
+  box.replaceChildren();
+  const add = (color, text) => {
+    const item = document.createElement("span"), chip = document.createElement("span");
+    chip.className = "chip";
+    chip.style.background = `rgb(${color.join(" ")})`;
+    item.append(chip, text);
+    box.append(item);
+  };
+  for (const [color, text] of overlay?.legend || []) add(color, text);
+  if (view.kind !== "stencil") return;
+  const pixels = new Array(256).fill(0);
+  for (const value of view.values) ++pixels[value];
+  pixels.forEach((n, value) => { if (n) add(palette[value], `${value}${value >= 128 ? ` (${value - 256})` : ""}: ${n} px`); });
+};
+
+/// Wires of several draws as those of one.
+const joined = (all) => {
+  const out = new Int32Array(all.reduce((n, wires) => n + wires.length, 0));
+  let at = 0;
+  for (const wires of all) { out.set(wires, at); at += wires.length; }
+  return out;
+};
