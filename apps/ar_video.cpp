@@ -51,6 +51,43 @@ std::string asked_for(const ArArguments& arguments) {
                      session.no_filter ? " no filter" : "");
 }
 
+void print_frame(const ar::VideoFrame& frame, const ar::SessionResult& result) {
+  json line = {{"frame", frame.index},
+               {"time_s", frame.time_s},
+               {"tags", detections_json(result.track)},
+               {"poses", poses_json(result)},
+               {"left_out", result.left_out},
+               {"augmented", result.augmented.has_value()},
+               {"ms", stages_json(result)}};
+  if (result.differential) line["differential"] = differential_json(*result.differential);
+  std::cout << line.dump() << '\n';
+}
+
+void print_summary(const VideoSummary& summary, bool as_json) {
+  const double count = static_cast<double>(std::max<std::int64_t>(summary.frames, 1));
+  const double drawn = static_cast<double>(std::max<std::int64_t>(summary.augmented, 1));
+  if (as_json) {
+    std::cout << json{{"frames", summary.frames},
+                      {"augmented", summary.augmented},
+                      {"without_pose", summary.without_pose},
+                      {"held", summary.held},
+                      {"missing", summary.missing},
+                      {"ms_a_frame",
+                       {{"track", summary.track_ms / count}, {"draw", summary.draw_ms / drawn}}}}
+                     .dump()
+              << '\n';
+    return;
+  }
+  std::cout << fmt::format(
+      "{} frames: {} augmented ({} with a held pose), {} without a pose kept as they "
+      "are; {:.1f} ms tracking and {:.1f} ms drawing a frame\n",
+      summary.frames, summary.augmented, summary.held, summary.without_pose,
+      summary.track_ms / count, summary.draw_ms / drawn);
+  if (summary.missing > 0)
+    std::cout << fmt::format("the video ends early: its header promises {} frames more\n",
+                             summary.missing);
+}
+
 }  // namespace
 
 void run_video(const ArArguments& arguments) {
@@ -76,6 +113,7 @@ void run_video(const ArArguments& arguments) {
 
   VideoSummary summary;
   std::size_t number = 0;
+  bool ended = false;
   {
     std::optional<std::int64_t> total = reader.promised_frames();
     if (arguments.frames > 0)
@@ -92,48 +130,18 @@ void run_video(const ArArguments& arguments) {
       const ar::Image& drawn = result.augmented ? result.augmented->composite : frame->image;
       if (frames) frames->write(number, drawn);
       summary.add(result);
-      if (arguments.as_json) {
-        json line = {{"frame", frame->index},
-                     {"time_s", frame->time_s},
-                     {"tags", detections_json(result.track)},
-                     {"poses", poses_json(result)},
-                     {"left_out", result.left_out},
-                     {"augmented", result.augmented.has_value()},
-                     {"ms", stages_json(result)}};
-        if (result.differential) line["differential"] = differential_json(*result.differential);
-        std::cout << line.dump() << '\n';
-      }
+      if (arguments.as_json) print_frame(*frame, result);
       if (window && !window->show(drawn, result)) {
         ++number;
+        ended = true;
         break;
       }
     }
   }
   const fs::path written = frames ? frames->finish(number) : fs::path();
-  summary.missing = reader.missing_frames();
-  const double count = static_cast<double>(std::max<std::int64_t>(summary.frames, 1));
-  const double drawn = static_cast<double>(std::max<std::int64_t>(summary.augmented, 1));
-  if (arguments.as_json) {
-    std::cout << json{{"frames", summary.frames},
-                      {"augmented", summary.augmented},
-                      {"without_pose", summary.without_pose},
-                      {"held", summary.held},
-                      {"missing", summary.missing},
-                      {"ms_a_frame",
-                       {{"track", summary.track_ms / count}, {"draw", summary.draw_ms / drawn}}}}
-                     .dump()
-              << '\n';
-    return;
-  }
-  std::cout << fmt::format(
-      "{} frames: {} augmented ({} with a held pose), {} without a pose kept as they "
-      "are; {:.1f} ms tracking and {:.1f} ms drawing a frame\n",
-      summary.frames, summary.augmented, summary.held, summary.without_pose,
-      summary.track_ms / count, summary.draw_ms / drawn);
-  if (summary.missing > 0)
-    std::cout << fmt::format("the video ends early: its header promises {} frames more\n",
-                             summary.missing);
-  if (!written.empty()) std::cout << "wrote " << written.string() << '\n';
+  if (!ended) summary.missing = reader.missing_frames();
+  print_summary(summary, arguments.as_json);
+  if (!arguments.as_json && !written.empty()) std::cout << "wrote " << written.string() << '\n';
 }
 
 void run_video_merge(const ArArguments& arguments) {

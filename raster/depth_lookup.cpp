@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raster/compare_func.h"
+
 namespace gnomon::raster {
 
 namespace {
@@ -21,28 +23,6 @@ float texel_coordinate(float coordinate, int size) {
 /// What a texel is compared with: depth units, exact (24 bits of float32 times 24 bits).
 double reference_units(float r, double one) {
   return std::isnan(r) ? 0.0 : static_cast<double>(std::clamp(r, 0.0f, 1.0f)) * one;
-}
-
-bool holds(CompareFunc func, double reference, double texel) {
-  switch (func) {
-    case CompareFunc::never:
-      return false;
-    case CompareFunc::less:
-      return reference < texel;
-    case CompareFunc::equal:
-      return reference == texel;
-    case CompareFunc::less_equal:
-      return reference <= texel;
-    case CompareFunc::greater:
-      return reference > texel;
-    case CompareFunc::not_equal:
-      return reference != texel;
-    case CompareFunc::greater_equal:
-      return reference >= texel;
-    case CompareFunc::always:
-      return true;
-  }
-  return false;
 }
 
 /// 1 or 0 for texel (x, y), which may lie outside.

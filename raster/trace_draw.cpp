@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "raster/blend.h"
+#include "raster/compare_func.h"
 #include "raster/interpolate.h"
 #include "raster/kernels.h"
 #include "raster/stencil_op.h"
@@ -13,28 +14,6 @@
 namespace gnomon::raster {
 
 namespace {
-
-bool holds(CompareFunc func, std::uint32_t a, std::uint32_t b) {
-  switch (func) {
-    case CompareFunc::never:
-      return false;
-    case CompareFunc::less:
-      return a < b;
-    case CompareFunc::equal:
-      return a == b;
-    case CompareFunc::less_equal:
-      return a <= b;
-    case CompareFunc::greater:
-      return a > b;
-    case CompareFunc::not_equal:
-      return a != b;
-    case CompareFunc::greater_equal:
-      return a >= b;
-    case CompareFunc::always:
-      return true;
-  }
-  return false;
-}
 
 std::int64_t floor_quotient(std::int64_t a, std::int64_t b) {
   const std::int64_t q = a / b;
@@ -173,7 +152,7 @@ Outcome DrawTrace::test(const TracedFragment& fragment, PixelValues& pixel) cons
       std::clamp(front ? draw_.stencil_ref.front : draw_.stencil_ref.back, 0, 255));
   Outcome outcome = Outcome::pass;
   if (stencil &&
-      !holds(stencil->func, ref & stencil->read_mask, pixel.stencil & stencil->read_mask))
+      !holds<int>(stencil->func, ref & stencil->read_mask, pixel.stencil & stencil->read_mask))
     outcome = Outcome::stencil_fail;
   else if (draw_.state.depth && targets_.depth) {
     if (!holds(draw_.state.depth->func, fragment.depth, pixel.depth))

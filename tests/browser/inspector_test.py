@@ -233,6 +233,40 @@ class InspectPage(PageTest):
         self.go(10**6)
 
 
+class UnlikeFrames(PageTest):
+    """Two frames with other passes, other buffers, of other sizes; one without stencil, one without a map."""
+
+    ready = "document.body.dataset.readyMs"
+
+    @classmethod
+    def make_page(cls):
+        page, frames = OUT / "unlike.html", SOURCE / "golden/frames"
+        cls.frame = frames / "shadow-map-linear.frame"
+        gnomon("inspect", cls.frame, "--compare", frames / "state-stencil-saturation.frame", "--out", page)
+        return page
+
+    def test_everything_is_shown_or_it_is_said_why_not(self):
+        for buffer in self.run_script("return [...document.getElementById('buffer').options].map(o => o.value)"):
+            Select(self.element("buffer")).select_by_value(buffer)
+            for overlay in ("none", "counts", "depth", "stencil", "changed", "differs"):
+                Select(self.element("overlay")).select_by_value(overlay)
+                for scope in ("command", "pass"):
+                    Select(self.element("scope")).select_by_value(scope)
+                    for command in (1, 2, 5, 12):
+                        self.run_script("inspector.go(arguments[0])", command)
+                        self.assertTrue(self.run_script("return document.getElementById('error').hidden"))
+            self.browser.find_element(By.TAG_NAME, "body").send_keys("x.]]][[[x")
+
+    def test_a_pixel_of_the_map_has_the_maps_history(self):
+        self.run_script("inspector.go(12)")
+        number = self.run_script(
+            "const {buffers} = inspector.panes[0].description; return buffers.findIndex(b => b.kind === 'depth' && b.width === 48)")
+        Select(self.element("buffer")).select_by_value(f"#{number}")
+        self.run_script("inspector.panes[0].view.pick(20, 17)")
+        self.assertEqual(self.run_script("return inspector.history"),
+                         json.loads(gnomon("history", self.frame, 20, 17, "--pass", 1, "--json")))
+
+
 class LabPage(PageTest):
     ready = "document.body.dataset.ready"
 
