@@ -139,14 +139,14 @@ void add_history(CLI::App& program) {
   command->add_option("frame", options->frame, "Frame file (docs/frame-format.md)")->required();
   command->add_option("x", options->x, "Column, 0 at the left")
       ->required()
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, raster::kMaxTargetSize - 1));
   command->add_option("y", options->y, "Row, 0 at the bottom as in OpenGL")
       ->required()
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, raster::kMaxTargetSize - 1));
   command
       ->add_option("--pass", options->pass,
                    "The pass whose buffers are meant, from 1 (default: the last)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1'000'000));
   command->add_option("--commands", options->commands, "Stop after so many commands")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 32));
   command

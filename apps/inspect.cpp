@@ -142,7 +142,7 @@ void add_inspect(CLI::App& program) {
                    "How shadows are found (default: the scene's), as for gnomon ar")
       ->check(CLI::IsMember({"zpass", "zfail", "auto", "differential"}));
   command->add_option("--compare", options->compare,
-                      "Another method, or a frame file, to see side by side");
+                      "zpass, zfail, auto, differential or a frame file, to see side by side");
   command->add_option("--lit-scene", options->lit_scene,
                       "What gnomon capture wrote, for differential shadows");
   command

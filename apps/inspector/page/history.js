@@ -145,7 +145,10 @@ const History = (() => {
     const walk = walkOf(history, pass, commands);
     const walkBox = make("div", undefined, box, "walkbox");
     walkBox.tabIndex = 0;
-    if (drawWalk(walkBox, walk)) make("p", walkText(walk), box);
+    if (drawWalk(walkBox, walk)) {
+      make("p", walkText(walk), box);
+      make("p", "Filled: counted; hollow: the depth test left it out. The bar says how many volumes the ray is in, if it begins in none.", box, "quiet");
+    }
     else walkBox.remove();
     let last = -1;
     for (const command of history.commands) {

@@ -82,7 +82,7 @@
   }
 
   const panes = [];
-  let active = null, playing = null;
+  let active = null, playing = null, following = null;
 
   const activate = (pane) => {
     if (active === pane) return;
@@ -98,7 +98,7 @@
     let last = -1;
     active.commands.forEach((command, i) => {
       if (command.pass !== last) {
-        const head = make("li", active.description.passes[command.pass].label, box, "pass");
+        const head = make("li", `${command.pass + 1}. ${active.description.passes[command.pass].label}`, box, "pass");
         head.setAttribute("role", "presentation");
       }
       last = command.pass;
@@ -223,6 +223,9 @@
     active.position = Math.min(Math.max(position, 1), active.commands.length);
     if (element("link").checked) for (const pane of panes) if (pane !== active) samePlace(active, pane);
     refresh();
+    // The history ends where one looks; it follows once the hand rests.
+    clearTimeout(following);
+    if (inspector.history && active.view.picked) following = setTimeout(() => tell(active.view.picked.x, active.view.picked.y, false), 250);
   };
   const goPass = (step) => {
     const { passes } = active.description;
@@ -230,7 +233,7 @@
       if (passes[p].commands.length) return go(active.passRange(p)[1]);
   };
 
-  const tell = (x, y) => {
+  const tell = (x, y, reveal = true) => {
     const asked = performance.now(), pane = active;
     for (const other of panes) if (other !== pane) { other.view.picked = { x, y }; other.view.draw(); }
     try {
@@ -238,7 +241,7 @@
       History.show(element("history"), told, pane.description, walkPass(pane), data.palette,
         { upTo: pane.position, onCommand: (command) => { activate(pane); go(command + 1); } });
       inspector.history = told;
-      element("history").scrollIntoView({ block: "start" });
+      if (reveal) element("history").scrollIntoView({ block: "start" });
     } catch (error) { fail(error); }
     document.body.dataset.historyMs = (performance.now() - asked).toFixed(1);
   };
@@ -261,7 +264,7 @@
   const status = (pane, x, y) => {
     const box = element("status"), i = y * pane.view.width + x, { buffer } = pane;
     if (!buffer || x >= buffer.width || y >= buffer.height) return;
-    const parts = [`pixel ${x}, ${y}`, `${buffer.kind} ${buffer.format}: ${pane.view.valueText(x, y)}`];
+    const parts = [`pixel ${x}, ${y}`, `${buffer.kind === "color" ? "colour" : buffer.kind} ${buffer.format}: ${pane.view.valueText(x, y)}`];
     if (buffer.format === "rgba32f") parts.push("floats, shown as bytes");
     if (buffer.kind === "depth") parts.push((pane.view.values[i] / buffer.farthest).toFixed(7));
     if (pane.view.layers.overlay?.note) parts.push(pane.view.layers.overlay.note(i));
@@ -301,7 +304,7 @@
   };
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, dialog")) return;
-    const act = keys[event.key];
+    const act = keys[event.key.toLowerCase()];
     if (!act) return;
     event.preventDefault();
     act();
@@ -316,6 +319,8 @@
   element("play").addEventListener("click", play);
   element("help").addEventListener("click", keys.h);
   for (const id of ["buffer", "overlay", "scope", "wires"]) element(id).addEventListener("change", refresh);
+
+  leaveAfterMouse();
 
   element("title").textContent = data.title;
   document.title = `${data.title} - gnomon inspect`;

@@ -70,7 +70,7 @@
           label.append(item.label);
         }
         input.id = item.name;
-        input.addEventListener("input", () => change(item, input));
+        for (const event of input.tagName === "SELECT" ? ["change"] : ["input"]) input.addEventListener(event, () => change(item, input));
         inputs.push({ item, input, label });
       }
     }
@@ -140,7 +140,11 @@
     state = engine.loadLab(slot, state);
     description = engine.describe(slot, true);
     count = rangeOf(description.passes.length - 1)[1];
+    if (element("show").value === "map" && passNamed("shadow map") < 0) element("show").value = "color";
+    element("show").querySelector("[value=map]").disabled = passNamed("shadow map") < 0;
     const b = execute();
+    // Another buffer's pixel is another one.
+    if (picked && (b.width !== view.width || b.height !== view.height)) picked = view.picked = null;
     // A copy: the module's memory is used again.
     view.show(b.kind, b.values.slice(), b.width, b.height, b.farthest);
     const ms = performance.now() - start;
@@ -208,9 +212,10 @@
 
   const tell = (x, y) => {
     picked = { x, y };
-    const counting = passNamed("shadow volumes");
+    const counting = passNamed("shadow volumes"), map = passNamed("shadow map");
     try {
-      const told = engine.history(slot, 0, x, y, count), whole = engine.describe(slot);
+      // Of the map's own pass where the map is looked at.
+      const told = engine.history(slot, element("show").value === "map" && map >= 0 ? map : 0, x, y, count), whole = engine.describe(slot);
       History.show(element("history"), told, whole, Math.max(counting, 0), data.palette);
       lab.history = told;
     } catch (error) { fail(error); }
@@ -255,10 +260,12 @@
     h: () => element("helpbox").showModal(),
   };
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, dialog") || !keys[event.key]) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, dialog") || !keys[event.key.toLowerCase()]) return;
     event.preventDefault();
-    keys[event.key]();
+    keys[event.key.toLowerCase()]();
   });
+
+  leaveAfterMouse();
 
   window.lab = {
     engine, view, history: null,

@@ -318,7 +318,7 @@ const showLegend = (box, view, overlay, palette) => {
   if (view.kind !== "stencil") return;
   const pixels = new Array(256).fill(0);
   for (const value of view.values) ++pixels[value];
-  pixels.forEach((n, value) => { if (n) add(palette[value], `${value}${value >= 128 ? ` (${value - 256})` : ""}: ${n} px`); });
+  pixels.forEach((n, value) => { if (n) add(palette[value], `${value}${value >= 230 ? ` (or ${value - 256})` : ""}: ${n} px`); });
 };
 
 /// Wires of several draws as those of one.
@@ -327,4 +327,12 @@ const joined = (all) => {
   let at = 0;
   for (const wires of all) { out.set(wires, at); at += wires.length; }
   return out;
+};
+
+/// A list that was used with the mouse gives the keys back to the page; one that was used with keys keeps them.
+const leaveAfterMouse = () => {
+  let byMouse = false;
+  document.addEventListener("pointerdown", () => { byMouse = true; }, true);
+  document.addEventListener("keydown", () => { byMouse = false; }, true);
+  document.addEventListener("change", (event) => { if (byMouse && event.target.matches("select")) event.target.blur(); });
 };
