@@ -6,6 +6,7 @@
 #include "apps/ar_arguments.h"
 #include "apps/ar_json.h"
 #include "apps/output_folder.h"
+#include "apps/photograph.h"
 #include "apps/step_pictures.h"
 #include "ar/error.h"
 #include "ar/frame_file.h"
@@ -39,13 +40,7 @@ void run_still(const ArArguments& arguments) {
   inputs.push_back(arguments.image);
   check_frame_target(arguments.save_frame, inputs);
   ar::Session session(scene, picture.width, picture.height, arguments.session);
-  for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
-  const ar::SessionResult result = session.process(picture, 0.0);
-  if (!result.augmented)
-    throw ar::InputError(fmt::format(
-        "{}: no pose for any virtual object: {} tags found, none of the scene's that "
-        "are needed ({})",
-        arguments.image.string(), result.track.detections.size(), session.known_tags()));
+  const ar::SessionResult result = augment_photograph(session, picture, arguments.image);
   const ar::Augmented& augmented = *result.augmented;
   make_folder(arguments.out);
   ar::write_png(arguments.out / "composite.png", augmented.composite);

@@ -13,11 +13,11 @@
 #include "apps/commands.h"
 #include "apps/inspector/frame_json.h"
 #include "apps/inspector/mesh_parts.h"
-#include "apps/inspector/state_names.h"
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/frame_file.h"
 #include "raster/history.h"
+#include "raster/state_names.h"
 #include "raster/stencil_text.h"
 
 namespace gnomon::apps {
@@ -62,11 +62,11 @@ void print_fragment(const raster::Draw& draw, const raster::Targets& targets,
       part.empty() ? std::string() : fmt::format(" ({})", ar::one_line(std::string(part))),
       fragment.front_facing ? "front" : "back");
   if (targets.depth && draw.state.depth)
-    text += fmt::format(", depth {} {} {}", fragment.depth, inspector::name(draw.state.depth->func),
+    text += fmt::format(", depth {} {} {}", fragment.depth, raster::name(draw.state.depth->func),
                         fragment.before.depth);
   text += fmt::format(": {}", raster::name(fragment.outcome));
   if (fragment.stencil_op != raster::StencilOp::keep)
-    text += fmt::format(", {}", inspector::name(fragment.stencil_op));
+    text += fmt::format(", {}", raster::name(fragment.stencil_op));
   std::cout << text << ';' << change_text(targets, fragment.before, fragment.after) << '\n';
 }
 
@@ -79,8 +79,8 @@ void print_text(const raster::Frame& frame, const raster::PixelHistory& told) {
       std::cout << fmt::format("pass {} {}\n", pass + 1, ar::one_line(frame.passes()[pass].label));
     }
     const raster::Command& command = *inspector::place_of(frame, record.command).command;
-    std::cout << fmt::format("{:6} {:5} {}{}\n", record.command + 1, inspector::kind(command),
-                             ar::one_line(std::string(inspector::label(command))),
+    std::cout << fmt::format("{:6} {:5} {}{}\n", record.command + 1, raster::kind(command),
+                             ar::one_line(std::string(raster::label(command))),
                              change_text(targets, record.before, record.after));
     const auto* draw = std::get_if<raster::Draw>(&command);
     for (const raster::FragmentRecord& fragment : record.fragments)

@@ -17,6 +17,7 @@
 #include "apps/inspector/page.h"
 #include "apps/output_folder.h"
 #include "apps/page_output.h"
+#include "apps/photograph.h"
 #include "ar/error.h"
 #include "ar/file.h"
 #include "ar/frame_file.h"
@@ -65,13 +66,7 @@ PageFrame frame_of_photograph(const ar::SceneFile& scene, const Options& options
   session_options.masks = false;
   session_options.samples = options.samples;
   ar::Session session(scene, picture.width, picture.height, session_options);
-  for (const std::string& note : session.notes()) std::cerr << "gnomon: note: " << note << '\n';
-  ar::SessionResult result = session.process(picture, 0.0);
-  if (!result.augmented)
-    throw ar::InputError(
-        fmt::format("{}: no pose for any virtual object: {} tags found, none of "
-                    "the scene's that are needed ({})",
-                    options.image.string(), result.track.detections.size(), session.known_tags()));
+  ar::SessionResult result = augment_photograph(session, picture, options.image);
   return {method.empty() ? "the scene's method" : method, std::move(result.augmented->frame)};
 }
 

@@ -18,6 +18,7 @@
 #include "ar/frame_file.h"
 #include "ar/image_file.h"
 #include "golden/hash.h"
+#include "raster/state_names.h"
 
 namespace gnomon::apps {
 namespace {
@@ -32,11 +33,8 @@ struct Options {
   bool json = false;
 };
 
-constexpr const char* kKinds[] = {"clear", "draw", "blit"};
-
 std::string label_of(const raster::Command& command) {
-  const auto* draw = std::get_if<raster::Draw>(&command);
-  return draw ? ar::one_line(draw->label) : "";
+  return ar::one_line(raster::label(command));
 }
 
 void write_pictures(const fs::path& out, const raster::RecordedFrame& recorded,
@@ -53,7 +51,7 @@ void print_json(const Options& options, const raster::Frame& frame, std::size_t 
   for (const raster::Pass& pass : frame.passes()) {
     ordered_json commands = ordered_json::array();
     for (const raster::Command& command : pass.commands)
-      commands.push_back({{"kind", kKinds[command.index()]}, {"label", label_of(command)}});
+      commands.push_back({{"kind", raster::kind(command)}, {"label", label_of(command)}});
     passes.push_back({{"label", pass.label},
                       {"size", {pass.targets.width(), pass.targets.height()}},
                       {"commands", commands}});
@@ -81,8 +79,7 @@ void print_text(const raster::Frame& frame, std::size_t executed,
     std::cout << fmt::format("pass {}x{} {}\n", pass.targets.width(), pass.targets.height(),
                              ar::one_line(pass.label));
     for (const raster::Command& command : pass.commands) {
-      std::cout << fmt::format("{:6} {:5} {}", ++number, kKinds[command.index()],
-                               label_of(command));
+      std::cout << fmt::format("{:6} {:5} {}", ++number, raster::kind(command), label_of(command));
       std::cout << (number > executed ? " (left out)\n" : "\n");
     }
   }

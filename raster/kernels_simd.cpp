@@ -39,28 +39,10 @@ namespace gnomon::raster {
 namespace HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_WASM
-// The front end's, which are all doubles, are those in plain C++.
-const Kernels* kernels_of_this_target() {
-  static const Kernels kKernels{cover_blocks,
-                                cover_pixels,
-                                compare_ranges,
-                                test_blocks,
-                                count_blocks,
-                                add_to_blocks,
-                                stencil_blocks,
-                                depth_range,
-                                fill_block,
-                                blend_block,
-                                shade_and_store,
-                                lookup_fails,
-                                store_colors,
-                                transform,
-                                scalar_kernels().project,
-                                light_vertices,
-                                scalar_kernels().select_triangles};
-  return &kKernels;
-}
-#else
+// The front end is all doubles: here it is the one in plain C++, select_triangles too.
+constexpr auto* project = &project_vertices;
+#endif
+
 const Kernels* kernels_of_this_target() {
   static constexpr Kernels kKernels{
       cover_blocks,   cover_pixels, compare_ranges, test_blocks,    count_blocks,    add_to_blocks,
@@ -68,7 +50,6 @@ const Kernels* kernels_of_this_target() {
       store_colors,   transform,    project,        light_vertices, select_triangles};
   return &kKernels;
 }
-#endif
 
 }  // namespace HWY_NAMESPACE
 }  // namespace gnomon::raster

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/inspector/mesh_parts.h"
-#include "apps/inspector/state_names.h"
+#include "raster/state_names.h"
 
 namespace gnomon::apps::inspector {
 

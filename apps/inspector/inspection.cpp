@@ -23,15 +23,11 @@ std::string text_of(const nlohmann::ordered_json& json) {
 Inspection::Inspection(std::shared_ptr<const void> owner, const raster::Frame& frame)
     : owner_(std::move(owner)), frame_(frame), buffers_(frame) {
   buffers_.reset();
-}
-
-bool Inspection::begins_pass(std::size_t command) const {
-  for (const raster::Pass& pass : frame_.passes()) {
-    if (command == 0) return true;
-    if (command < pass.commands.size()) return false;
-    command -= pass.commands.size();
+  std::size_t command = 0;
+  for (const raster::Pass& pass : frame.passes()) {
+    pass_begins_.push_back(command);
+    command += pass.commands.size();
   }
-  return false;
 }
 
 void Inspection::run_to(std::size_t commands) {

@@ -3,6 +3,7 @@
 // Invariant: what is shown is what execute() leaves; asking changes nothing.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -46,12 +47,15 @@ class Inspection {
     std::vector<raster::Buffer> buffers;
   };
   void run_to(std::size_t commands);
-  bool begins_pass(std::size_t command) const;
+  bool begins_pass(std::size_t command) const {
+    return std::ranges::binary_search(pass_begins_, command);
+  }
 
   std::shared_ptr<const void> owner_;
   const raster::Frame& frame_;
   FrameBuffers buffers_;
   raster::ExecuteMemory memory_;
+  std::vector<std::size_t> pass_begins_;
   std::size_t position_ = 0;
   /// At beginnings of passes, in order.
   std::vector<Saved> saved_;

@@ -13,13 +13,14 @@ namespace gnomon::apps::inspector {
 
 using nlohmann::ordered_json;
 
-extern const std::string_view kEngine, kCss, kInspectHtml, kLabHtml, kEngineScript, kViewScript,
-    kHistoryScript, kInspectScript, kLabScript;
+extern const std::string_view kEngine, kCss, kPageHtml, kInspectHtml, kLabHtml, kEngineScript,
+    kViewScript, kHistoryScript, kInspectScript, kLabScript;
 
 namespace {
 
-std::string fill(std::string_view page, std::string_view script, const ordered_json& frames,
-                 const std::string& title) {
+/// `name`: of the page; `title`: of what it shows.
+std::string fill(const char* name, std::string_view body, std::string_view script,
+                 const ordered_json& frames, const std::string& title) {
   if (kEngine.empty())
     throw ar::InputError(
         "this gnomon was built without clang++-16 for WebAssembly, so it has no pages "
@@ -34,13 +35,15 @@ std::string fill(std::string_view page, std::string_view script, const ordered_j
                           {"frames", frames}};
   const std::string json =
       script_safe(data.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
-  return fill_template(page, {{"css", kCss},
-                              {"data", json},
-                              {"engine", kEngine},
-                              {"engine_script", kEngineScript},
-                              {"view_script", kViewScript},
-                              {"history_script", kHistoryScript},
-                              {"script", script}});
+  return fill_template(kPageHtml, {{"css", kCss},
+                                   {"title", name},
+                                   {"body", body},
+                                   {"data", json},
+                                   {"engine", kEngine},
+                                   {"engine_script", kEngineScript},
+                                   {"view_script", kViewScript},
+                                   {"history_script", kHistoryScript},
+                                   {"script", script}});
 }
 
 }  // namespace
@@ -49,9 +52,11 @@ std::string inspect_page(const std::string& title, const std::vector<PageFrame>&
   ordered_json list = ordered_json::array();
   for (const PageFrame& frame : frames)
     list.push_back({{"name", frame.name}, {"bytes", ar::base64_from_bytes(frame.bytes)}});
-  return fill(kInspectHtml, kInspectScript, list, title);
+  return fill("gnomon inspect", kInspectHtml, kInspectScript, list, title);
 }
 
-std::string lab_page() { return fill(kLabHtml, kLabScript, ordered_json::array(), "gnomon lab"); }
+std::string lab_page() {
+  return fill("gnomon lab", kLabHtml, kLabScript, ordered_json::array(), "gnomon lab");
+}
 
 }  // namespace gnomon::apps::inspector

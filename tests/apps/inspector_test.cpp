@@ -228,12 +228,10 @@ std::size_t differing(const LabState& a, const LabState& b) {
   return count;
 }
 
-LabState stage(LabStage stage) { return starting_state(stage); }
-
 // Oracle of the lessons' states: z-fail with both caps and wrapping counts, which is right
 // (docs/volumes.md), and the numbers of docs/lesson.md.
 TEST(Lesson, ZPassIsRightOutsideTheShadowAndWrongInsideIt) {
-  LabState state = stage(LabStage::camera_in_shadow), right = state;
+  LabState state = starting_state(LabStage::camera_in_shadow), right = state;
   right.method = LabMethod::zfail;
   EXPECT_EQ(differing(state, right), 0u);
   for (LabState* s : {&state, &right}) {
@@ -245,7 +243,7 @@ TEST(Lesson, ZPassIsRightOutsideTheShadowAndWrongInsideIt) {
 }
 
 TEST(Lesson, AMissingBaseLeavesAShadowWhereThereIsNone) {
-  LabState state = stage(LabStage::missing_cap), right = state;
+  LabState state = starting_state(LabStage::missing_cap), right = state;
   right.back_cap = true;
   EXPECT_EQ(differing(state, right), 2084u);
   // z-fail counts from infinity, so it is the front cap that it misses.
@@ -257,7 +255,7 @@ TEST(Lesson, AMissingBaseLeavesAShadowWhereThereIsNone) {
 }
 
 TEST(Lesson, WrappingLoses256VolumesAndSaturatingWhatIsBeyond255) {
-  LabState wraps = stage(LabStage::overflow), saturates = wraps;
+  LabState wraps = starting_state(LabStage::overflow), saturates = wraps;
   saturates.saturate = true;
   wraps.plates = saturates.plates = 255;
   EXPECT_EQ(differing(wraps, saturates), 0u);
@@ -268,14 +266,14 @@ TEST(Lesson, WrappingLoses256VolumesAndSaturatingWhatIsBeyond255) {
 }
 
 TEST(Lesson, TheClassicalOutlineOfAnOpenBoxLosesPartOfItsShadow) {
-  const LabState state = stage(LabStage::open_mesh);
+  const LabState state = starting_state(LabStage::open_mesh);
   LabState right = state;
   right.classical_outline = false;
   EXPECT_EQ(differing(state, right), 3688u);
 }
 
 TEST(Lesson, AnOffsetStopsAcne) {
-  LabState state = stage(LabStage::acne), right = state;
+  LabState state = starting_state(LabStage::acne), right = state;
   right.method = LabMethod::zfail;
   EXPECT_EQ(differing(state, right), 49117u);
   state.map_offset_factor = 1.0;

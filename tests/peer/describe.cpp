@@ -1,56 +1,15 @@
 #include "describe.h"
 
-#include <array>
 #include <sstream>
 #include <string_view>
+
+#include "raster/state_names.h"
 
 namespace gnomon::peer {
 
 using namespace gnomon::raster;
 
 namespace {
-
-std::string_view text(CompareFunc func) {
-  constexpr std::array<std::string_view, 8> kNames{
-      "never", "less", "equal", "less_equal", "greater", "not_equal", "greater_equal", "always"};
-  return kNames.at(static_cast<std::size_t>(func));
-}
-
-std::string_view text(StencilOp op) {
-  constexpr std::array<std::string_view, 8> kNames{"keep",      "zero", "replace",   "incr",
-                                                   "incr_wrap", "decr", "decr_wrap", "invert"};
-  return kNames.at(static_cast<std::size_t>(op));
-}
-
-std::string_view text(BlendOp op) {
-  constexpr std::array<std::string_view, 5> kNames{"add", "subtract", "reverse_subtract", "min",
-                                                   "max"};
-  return kNames.at(static_cast<std::size_t>(op));
-}
-
-std::string_view text(BlendFactor factor) {
-  constexpr std::array<std::string_view, 15> kNames{"zero",
-                                                    "one",
-                                                    "src_color",
-                                                    "one_minus_src_color",
-                                                    "dst_color",
-                                                    "one_minus_dst_color",
-                                                    "src_alpha",
-                                                    "one_minus_src_alpha",
-                                                    "dst_alpha",
-                                                    "one_minus_dst_alpha",
-                                                    "constant_color",
-                                                    "one_minus_constant_color",
-                                                    "constant_alpha",
-                                                    "one_minus_constant_alpha",
-                                                    "src_alpha_saturate"};
-  return kNames.at(static_cast<std::size_t>(factor));
-}
-
-std::string_view text(Cull cull) {
-  constexpr std::array<std::string_view, 4> kNames{"none", "front", "back", "front_and_back"};
-  return kNames.at(static_cast<std::size_t>(cull));
-}
 
 class Writer {
  public:
@@ -95,28 +54,28 @@ class Writer {
     out_ << " color_write " << write[0] << write[1] << write[2] << write[3];
   }
 
-  void face(std::string_view name, const StencilFace& f) {
-    out_ << " stencil_" << name << " (func " << text(f.func) << ", read_mask " << int{f.read_mask}
-         << ", write_mask " << int{f.write_mask} << ", fail " << text(f.fail) << ", depth_fail "
-         << text(f.depth_fail) << ", pass " << text(f.pass) << ")";
+  void face(std::string_view what, const StencilFace& f) {
+    out_ << " stencil_" << what << " (func " << name(f.func) << ", read_mask " << int{f.read_mask}
+         << ", write_mask " << int{f.write_mask} << ", fail " << name(f.fail) << ", depth_fail "
+         << name(f.depth_fail) << ", pass " << name(f.pass) << ")";
   }
 
   void blend(const Blend& b) {
-    out_ << " blend (" << text(b.color_op) << " " << text(b.src_color) << " " << text(b.dst_color)
-         << ", alpha " << text(b.alpha_op) << " " << text(b.src_alpha) << " " << text(b.dst_alpha);
+    out_ << " blend (" << name(b.color_op) << " " << name(b.src_color) << " " << name(b.dst_color)
+         << ", alpha " << name(b.alpha_op) << " " << name(b.src_alpha) << " " << name(b.dst_alpha);
     vector(", constant", b.constant);
     out_ << ")";
   }
 
   void state(const State& s) {
-    if (s.depth) out_ << " depth " << text(s.depth->func) << (s.depth->write ? "" : " unwritten");
+    if (s.depth) out_ << " depth " << name(s.depth->func) << (s.depth->write ? "" : " unwritten");
     if (s.stencil) {
       face("front", s.stencil->front);
       face("back", s.stencil->back);
     }
     color_mask(s.color.write);
     if (s.color.blend) blend(*s.color.blend);
-    if (s.cull != Cull::none) out_ << " cull " << text(s.cull);
+    if (s.cull != Cull::none) out_ << " cull " << name(s.cull);
     if (s.front_face != FrontFace::ccw) out_ << " front_face cw";
     if (s.polygon_offset)
       out_ << " polygon_offset (" << s.polygon_offset->factor << ", " << s.polygon_offset->units
@@ -130,7 +89,7 @@ class Writer {
 
   void lookup(const DepthLookup& l, DepthTextureMode mode) {
     constexpr std::array<std::string_view, 3> kModes{"luminance", "alpha", "intensity"};
-    out_ << " depth_lookup (" << text(l.func)
+    out_ << " depth_lookup (" << name(l.func)
          << (l.filter == Filter::linear ? ", linear, " : ", nearest, ")
          << kModes.at(static_cast<std::size_t>(mode));
     if (l.border) out_ << ", border " << *l.border;

@@ -72,3 +72,15 @@ class Engine {
   historyText(slot, pass, x, y, commands) { return this.resultText(this.wasm.history(slot, pass, x, y, commands)); }
   hashes(slot) { return this.resultText(this.wasm.hashes(slot)).trim().split("\n"); }
 }
+
+/// What both pages begin with: their data, the line for errors (null: none), and the engine.
+const startPage = async () => {
+  const element = (id) => document.getElementById(id);
+  const fail = (error) => {
+    element("error").textContent = error ? String(error.message || error) : "";
+    element("error").hidden = !error;
+  };
+  const data = JSON.parse(element("data").textContent);
+  const engine = await Engine.start(element("engine").textContent).catch((error) => { fail(error); throw error; });
+  return { element, fail, data, engine };
+};

@@ -34,18 +34,21 @@ const History = (() => {
 
   const counts = (op) => op.startsWith("incr") ? 1 : op.startsWith("decr") ? -1 : 0;
 
+  /// Does a command count in the stencil?
+  const countsIn = ({ state }) => Boolean(state?.stencil) && [state.stencil.front, state.stencil.back].some((f) => counts(f.pass) || counts(f.depth_fail));
+
   /// The fragments of one pass's last batch of counts: of draws with an operation that counts, since the stencil was last set
   /// otherwise (a clear, or counts that became a flag). commands: of the frame, with their state.
   const walkOf = (history, pass, commands) => {
     let fragments = [], surface, bits = 255;
     for (const command of history.commands) {
       if (command.pass !== pass) continue;
-      const stencil = commands[command.command].state?.stencil;
-      if (!stencil || ![stencil.front, stencil.back].some((f) => counts(f.pass) || counts(f.depth_fail))) {
+      const drawn = commands[command.command];
+      if (!countsIn(drawn)) {
         if (command.kind === "clear" || command.before.stencil !== command.after.stencil) fragments = [];
         continue;
       }
-      bits = stencil.front.write_mask;
+      bits = drawn.state.stencil.front.write_mask;
       for (const f of command.fragments) {
         surface = f.before.depth ?? surface;
         fragments.push({ ...f, draw: command.label, count: counts(f.stencil_op) });
@@ -167,5 +170,5 @@ const History = (() => {
       for (const f of command.fragments) fragmentRow(body, f, palette, isBytes);
     }
   };
-  return { show, make };
+  return { show, make, countsIn };
 })();

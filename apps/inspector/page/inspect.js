@@ -1,15 +1,8 @@
 "use strict";
 // The inspector: steps through the frames of the page and shows what each command does.
 (async () => {
-  const element = (id) => document.getElementById(id);
-  const data = JSON.parse(element("data").textContent);
-  const make = History.make;
-  const fail = (error) => {
-    element("error").textContent = error ? String(error.message || error) : "";
-    element("error").hidden = !error;
-  };
   const started = performance.now();
-  const engine = await Engine.start(element("engine").textContent).catch((error) => { fail(error); throw error; });
+  const { element, fail, data, engine } = await startPage(), { make } = History;
 
   /// A frame with its position: `position` commands were executed, of which the last is looked at.
   class Pane {
@@ -253,11 +246,8 @@
   };
   /// The last pass up to the one looked at that counts.
   const walkPass = (pane) => {
-    for (let i = pane.position - 1; i >= 0; --i) {
-      const faces = pane.commands[i].state?.stencil;
-      if (faces && [faces.front, faces.back].some((f) => [f.pass, f.depth_fail].some((op) => /^(incr|decr)/.test(op))) && pane.commands[i].label.startsWith("volume"))
-        return pane.commands[i].pass;
-    }
+    for (let i = pane.position - 1; i >= 0; --i)
+      if (History.countsIn(pane.commands[i]) && pane.commands[i].label.startsWith("volume")) return pane.commands[i].pass;
     return pane.command.pass;
   };
 

@@ -1,14 +1,7 @@
 "use strict";
 // The lab: a state, its controls, and the frame that the rasterizer makes of it after every change.
 (async () => {
-  const element = (id) => document.getElementById(id);
-  const data = JSON.parse(element("data").textContent);
-  const make = History.make;
-  const fail = (error) => {
-    element("error").textContent = error ? String(error.message || error) : "";
-    element("error").hidden = !error;
-  };
-  const engine = await Engine.start(element("engine").textContent).catch((error) => { fail(error); throw error; });
+  const { element, fail, data, engine } = await startPage(), { make } = History;
   const slot = 0;
   let state = {}, description = null, count = 0, picked = null;
   const hint = element("history").firstElementChild;
@@ -70,7 +63,7 @@
           label.append(item.label);
         }
         input.id = item.name;
-        for (const event of input.tagName === "SELECT" ? ["change"] : ["input"]) input.addEventListener(event, () => change(item, input));
+        input.addEventListener(item.options ? "change" : "input", () => change(item, input));
         inputs.push({ item, input, label });
       }
     }
@@ -106,7 +99,6 @@
       else if (document.activeElement !== input || item.options) input.value = state[item.name];
       if (item.output) item.output.textContent = `${Number(state[item.name].toFixed(2))} ${item.unit || ""}`;
       label.hidden = item.when ? !item.when(state) : false;
-      label.style.display = label.hidden ? "none" : "";
     }
     const [title, text] = stories[state.stage], box = element("story");
     if (box.dataset.stage === state.stage) return;
@@ -129,7 +121,7 @@
     const stop = show === "stencil" && counting >= 0 ? rangeOf(counting)[1] : count;
     engine.seek(slot, stop);
     const map = passNamed("shadow map"), { targets } = description.passes[0];
-    const number = show === "map" ? (map >= 0 ? description.passes[map].targets.depth : targets.depth) : targets[show];
+    const number = show === "map" ? description.passes[map].targets.depth : targets[show];
     const buffer = description.buffers[number];
     return { ...buffer, values: engine.buffer(slot, number, buffer.kind), farthest: buffer.format === "d16" ? 0xffff : 0xffffff };
   };
@@ -140,8 +132,9 @@
     state = engine.loadLab(slot, state);
     description = engine.describe(slot, true);
     count = rangeOf(description.passes.length - 1)[1];
-    if (element("show").value === "map" && passNamed("shadow map") < 0) element("show").value = "color";
-    element("show").querySelector("[value=map]").disabled = passNamed("shadow map") < 0;
+    const hasMap = passNamed("shadow map") >= 0;
+    if (element("show").value === "map" && !hasMap) element("show").value = "color";
+    element("show").querySelector("[value=map]").disabled = !hasMap;
     const b = execute();
     // Another buffer's pixel is another one.
     if (picked && (b.width !== view.width || b.height !== view.height)) picked = view.picked = null;
@@ -154,7 +147,6 @@
     element("speed").textContent = `${b.width}\u00d7${b.height} in ${median.toFixed(1)} ms (median of ${times.length}): ${Math.floor(1000 / median)} frames a second`;
     showControls();
     fail(null);
-    return ms;
   };
   let layersMs = 0;
   const layers = () => {
@@ -179,11 +171,11 @@
   };
   /// What takes longer than a frame, once the hand rests.
   let resting = null;
-  const rest = () => {
+  const rest = (withLayers) => {
     clearTimeout(resting);
     resting = setTimeout(() => {
       try {
-        layers();
+        if (withLayers) layers();
         engine.seek(slot, count);
         element("hashes").textContent = engine.hashes(slot).join("\n");
         if (picked) tell(picked.x, picked.y);
@@ -200,12 +192,13 @@
       try {
         drawNow();
         // Layers follow the hand where they are quick.
-        if (layersMs < 30) layers();
+        const quick = layersMs < 30;
+        if (quick) layers();
         else {
           view.setOverlay(null);
           view.setWires(null);
         }
-        rest();
+        rest(!quick);
       } catch (error) { fail(error); }
     });
   };

@@ -1,8 +1,8 @@
-#include "apps/inspector/state_names.h"
+#include "raster/state_names.h"
 
 #include <array>
 
-namespace gnomon::apps::inspector {
+namespace gnomon::raster {
 
 namespace {
 
@@ -13,25 +13,25 @@ std::string_view pick(const std::array<std::string_view, kCount>& names, Enum va
 
 }  // namespace
 
-std::string_view name(raster::CompareFunc func) {
+std::string_view name(CompareFunc func) {
   static constexpr std::array<std::string_view, 8> kNames{
       "never", "less", "equal", "less_equal", "greater", "not_equal", "greater_equal", "always"};
   return pick(kNames, func);
 }
 
-std::string_view name(raster::StencilOp op) {
+std::string_view name(StencilOp op) {
   static constexpr std::array<std::string_view, 8> kNames{
       "keep", "zero", "replace", "incr", "incr_wrap", "decr", "decr_wrap", "invert"};
   return pick(kNames, op);
 }
 
-std::string_view name(raster::BlendOp op) {
+std::string_view name(BlendOp op) {
   static constexpr std::array<std::string_view, 5> kNames{"add", "subtract", "reverse_subtract",
                                                           "min", "max"};
   return pick(kNames, op);
 }
 
-std::string_view name(raster::BlendFactor factor) {
+std::string_view name(BlendFactor factor) {
   static constexpr std::array<std::string_view, 15> kNames{"zero",
                                                            "one",
                                                            "src_color",
@@ -50,20 +50,20 @@ std::string_view name(raster::BlendFactor factor) {
   return pick(kNames, factor);
 }
 
-std::string_view name(raster::Cull cull) {
+std::string_view name(Cull cull) {
   static constexpr std::array<std::string_view, 4> kNames{"none", "front", "back",
                                                           "front_and_back"};
   return pick(kNames, cull);
 }
 
-std::string_view kind(const raster::Command& command) {
+std::string_view kind(const Command& command) {
   static constexpr std::array<std::string_view, 3> kNames{"clear", "draw", "blit"};
   return kNames.at(command.index());
 }
 
-std::string_view label(const raster::Command& command) {
-  const auto* draw = std::get_if<raster::Draw>(&command);
+std::string_view label(const Command& command) {
+  const auto* draw = std::get_if<Draw>(&command);
   return draw ? std::string_view(draw->label) : std::string_view();
 }
 
-}  // namespace gnomon::apps::inspector
+}  // namespace gnomon::raster
